@@ -1,0 +1,65 @@
+# The one place where compile options live. Every target is made by sgraphs_library, sgraphs_executable or
+# sgraphs_test, so that language level, warnings, floating-point rules and sanitizers are the same everywhere.
+
+set(SGRAPHS_SANITIZER "" CACHE STRING "address (with undefined behaviour), thread, or empty")
+set_property(CACHE SGRAPHS_SANITIZER PROPERTY STRINGS "" address thread)
+
+function(sgraphs_target_defaults target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  # Headers are included by their path from the top: "common/geometry/se3.h".
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  # Same bytes on every replay: no contraction into fused multiply-adds, no reassociation, and the baseline
+  # instruction set (-march=native would also break the binary interface with Debian's PCL).
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    -Woverloaded-virtual -Werror -ffp-contract=off)
+  if(SGRAPHS_SANITIZER STREQUAL "address")
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
+      -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  elseif(SGRAPHS_SANITIZER STREQUAL "thread")
+    target_compile_options(${target} PRIVATE -fsanitize=thread -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=thread)
+  elseif(SGRAPHS_SANITIZER)
+    message(FATAL_ERROR "SGRAPHS_SANITIZER='${SGRAPHS_SANITIZER}': use address, thread, or nothing")
+  endif()
+endfunction()
+
+# sgraphs_library(NAME SOURCES a.cpp … [DEPS public libraries] [PRIVATE_DEPS libraries kept out of the headers])
+function(sgraphs_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  sgraphs_target_defaults(${name})
+  target_link_libraries(${name} PUBLIC ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
+endfunction()
+
+# sgraphs_executable(NAME SOURCES main.cpp … DEPS libraries [OUTPUT file name]); all programs land in build/bin.
+function(sgraphs_executable name)
+  cmake_parse_arguments(ARG "" "OUTPUT" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  sgraphs_target_defaults(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPS})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  if(ARG_OUTPUT)
+    set_target_properties(${name} PROPERTIES OUTPUT_NAME ${ARG_OUTPUT})
+  endif()
+endfunction()
+
+# sgraphs_test(NAME SOURCES x_test.cpp … DEPS libraries): one GoogleTest program, its cases known to CTest.
+function(sgraphs_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  if(NOT SGRAPHS_BUILD_TESTS)
+    return()
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  sgraphs_target_defaults(${name})
+  # Uninitialised Eigen values become NaN in tests, so that reading one is seen.
+  target_compile_definitions(${name} PRIVATE EIGEN_INITIALIZE_MATRICES_BY_NAN
+    SGRAPHS_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data"
+    SGRAPHS_SHARED_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data"
+    SGRAPHS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    SGRAPHS_BINARY_DIR="${PROJECT_BINARY_DIR}/bin")
+  target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS "${ARG_LABELS}")
+endfunction()
