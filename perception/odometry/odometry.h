@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "common/types/keyframe.h"
+#include "common/types/lidar_scan.h"
+#include "common/types/session.h"
+#include "perception/odometry/odometry_config.h"
+
+namespace sgraphs {
+
+struct OdometryOutput {
+  OdometryEstimate estimate;
+  std::optional<Keyframe> keyframe;  // present if this scan became a keyframe
+};
+
+// Scans, and the legs' odometry where the mode asks for it, become poses and keyframes. A pure function of
+// its inputs so far: no clock, no file; the number of threads does not change a bit of the output.
+class Odometry {
+ public:
+  Odometry(const OdometryConfig& config, OdometryMode mode, const SE3& T_body_lidar);
+  ~Odometry();
+
+  // The next scan, in order of time. `body_odometry`: the legs' samples from the last one at or before
+  // scan.begin to the first one at or after scan.end, as far as they exist; empty in lidar mode. Nothing is
+  // returned for a scan that cannot be used (fewer than the configured number of points): the caller counts
+  // it.
+  std::optional<OdometryOutput> step(const LidarScan& scan, std::span<const BodyOdometry> body_odometry);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sgraphs
