@@ -19,7 +19,8 @@ KeyframeRegistration::KeyframeRegistration(const RegistrationConfig& registratio
     : registration_(registration), covariance_(covariance) {}
 
 std::vector<RelativePose> KeyframeRegistration::step(KeyframeId id, const SE3& T_odom_body,
-                                                     const std::vector<Surfel>& surfels, int threads) {
+                                                     const std::vector<Surfel>& surfels,
+                                                     const Matrix6d& anchor_covariance, int threads) {
   std::vector<RelativePose> measured;
   Vector6d free;
   free << Eigen::Vector3d::Constant(kFree_m * kFree_m), Eigen::Vector3d::Constant(kFree_rad * kFree_rad);
@@ -35,12 +36,15 @@ std::vector<RelativePose> KeyframeRegistration::step(KeyframeId id, const SE3& T
     r.from = reference.id;
     r.to = id;
     r.T_from_to = T_from_to;
-    r.covariance = covariance_.neighbour_scale * result.covariance;
-    r.covariance.diagonal().head<3>().array() += covariance_.floor_m * covariance_.floor_m;
-    r.covariance.diagonal().tail<3>().array() += covariance_.floor_rad * covariance_.floor_rad;
+    r.covariance = covariance_.neighbour_scale * result.covariance +
+                   composeCovariance(reference.anchor_covariance, T_from_to, anchor_covariance);
+    r.covariance.diagonal().head<3>().array() +=
+        covariance_.neighbour_floor_m * covariance_.neighbour_floor_m;
+    r.covariance.diagonal().tail<3>().array() +=
+        covariance_.neighbour_floor_rad * covariance_.neighbour_floor_rad;
     measured.push_back(r);
   }
-  Reference reference{id, T_odom_body, SurfelMap(registration_.cell_m)};
+  Reference reference{id, T_odom_body, anchor_covariance, SurfelMap(registration_.cell_m)};
   for (const Surfel& s : surfels) reference.map.insert(s, SE3(), kMerge_m);
   references_.push_back(std::move(reference));
   if (references_.size() > kNeighbours) references_.pop_front();

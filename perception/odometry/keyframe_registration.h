@@ -17,13 +17,16 @@ class KeyframeRegistration {
   KeyframeRegistration(const RegistrationConfig& registration, const CovarianceConfig& covariance);
 
   // Registers the patches of a new keyframe (in its body) against the previous keyframes and remembers them.
+  // `anchor_covariance`: how far the keyframe's pose may lie off its own cloud, which is the mean of many
+  // scans.
   std::vector<RelativePose> step(KeyframeId id, const SE3& T_odom_body, const std::vector<Surfel>& surfels,
-                                 int threads);
+                                 const Matrix6d& anchor_covariance, int threads);
 
  private:
   struct Reference {
     KeyframeId id;
     SE3 T_odom_body;
+    Matrix6d anchor_covariance;
     SurfelMap map;
   };
   RegistrationConfig registration_;

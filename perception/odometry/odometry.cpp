@@ -22,6 +22,8 @@ constexpr double kDegenerateSigma_rad = 0.01;
 constexpr Duration kMaxGap{500000};  // a longer silence begins a new local motion
 constexpr int64_t kPruneEvery = 50;  // scans
 constexpr int kMaxFailures = 10;
+// Share of the legs' covariance over a keyframe that remains between its pose and its own cloud.
+constexpr double kBentByLegs = 0.05;
 
 Matrix6d diagonalInformation(double sigma_m, double sigma_rad) {
   Vector6d d;
@@ -145,6 +147,8 @@ class Odometry::Impl {
     prior.previous_twist = previous_twist_;
     prior.acceleration_information =
         diagonalInformation(c.acceleration_sigma_mps2 * dt * dt, c.angular_acceleration_sigma_rps2 * dt * dt);
+    const double vertical_m = c.vertical_acceleration_sigma_mps2 * dt * dt;
+    prior.acceleration_information(2, 2) = 1.0 / (vertical_m * vertical_m);
     const ScanMotion predicted = motion;
     const RegistrationResult result = registerScan(surfels, map_, prior, c, config_.threads, motion);
     e.inlier_share = result.inlier_share;
@@ -202,7 +206,11 @@ class Odometry::Impl {
       r.covariance = odometryEdgeCovariance(r.T_from_to);
       keyframe.relative_poses.push_back(r);
     }
-    for (const RelativePose& r : neighbours_.step(keyframe.id, e.T_odom_body, surfels, config_.threads))
+    // A cloud put together by the legs alone is bent by their drift.
+    const Matrix6d anchor =
+        mode_ == OdometryMode::kEncoder ? Matrix6d(kBentByLegs * edge_covariance_) : registered_covariance_;
+    for (const RelativePose& r :
+         neighbours_.step(keyframe.id, e.T_odom_body, surfels, anchor, config_.threads))
       keyframe.relative_poses.push_back(r);
     T_odom_keyframe_ = e.T_odom_body;
     keyframe_covariance_ = registered_covariance_;

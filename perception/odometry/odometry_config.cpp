@@ -37,7 +37,10 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
   v.field("robust_width", robust_width, 0.5, 20.0, "Width of the Cauchy kernel in standard deviations");
   v.field("max_iterations", max_iterations, 1, 100, "Gauss-Newton iterations per scan at most");
   v.field("segments", segments, 1, 8, "Pieces of constant twist that a scan's motion is made of");
-  v.field("acceleration_sigma_mps2", acceleration_sigma_mps2, 0.1, 100.0, "Prior on the change of velocity");
+  v.field("acceleration_sigma_mps2", acceleration_sigma_mps2, 0.1, 100.0,
+          "Prior on the change of horizontal velocity");
+  v.field("vertical_acceleration_sigma_mps2", vertical_acceleration_sigma_mps2, 0.1, 100.0,
+          "Prior on the change of vertical velocity: a walking body bobs");
   v.field("angular_acceleration_sigma_rps2", angular_acceleration_sigma_rps2, 0.1, 100.0,
           "Prior on the change of angular velocity");
   v.field("begin_sigma_m", begin_sigma_m, 1e-5, 1.0, "How well the end of the previous scan is trusted");
@@ -68,6 +71,9 @@ void CovarianceConfig::visit(ConfigVisitor& v) {
   v.field("floor_rad", floor_rad, 0.0, 1.0, "Added between keyframes, in quadrature");
   v.field("neighbour_scale", neighbour_scale, 0.1, 1e4,
           "Factor on the covariance of keyframe-to-keyframe registration");
+  v.field("neighbour_floor_m", neighbour_floor_m, 0.0, 1.0,
+          "Added to it in quadrature: the clouds' own distortion");
+  v.field("neighbour_floor_rad", neighbour_floor_rad, 0.0, 1.0, "Added to it in quadrature");
 }
 
 void OdometryConfig::visit(ConfigVisitor& v) {

@@ -37,11 +37,12 @@ struct RegistrationConfig {
   double sigma_floor_m = 0.006;
   double robust_width = 3.0;
   int max_iterations = 12;
-  int segments = 2;
-  double acceleration_sigma_mps2 = 4.0;
-  double angular_acceleration_sigma_rps2 = 3.0;
-  double begin_sigma_m = 0.003;
-  double begin_sigma_rad = 0.0005;
+  int segments = 1;
+  double acceleration_sigma_mps2 = 1.5;
+  double vertical_acceleration_sigma_mps2 = 5.0;
+  double angular_acceleration_sigma_rps2 = 1.5;
+  double begin_sigma_m = 0.005;
+  double begin_sigma_rad = 0.0008;
 
   void visit(ConfigVisitor& v);
 };
@@ -73,6 +74,8 @@ struct CovarianceConfig {
   double floor_m = 0.002;
   double floor_rad = 0.0003;
   double neighbour_scale = 4.0;
+  double neighbour_floor_m = 0.002;
+  double neighbour_floor_rad = 0.0006;
 
   void visit(ConfigVisitor& v);
 };
