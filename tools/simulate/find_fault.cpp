@@ -46,7 +46,8 @@ std::vector<Obstacle> obstaclesOf(const Scene& scene) {
       obstacles.push_back({item("walls", i), boxOf(scene.walls[i], part)});
   for (size_t i = 0; i < scene.boxes.size(); ++i) {
     const std::string& name = scene.boxes[i].name;
-    obstacles.push_back({name.empty() ? item("boxes", i) : item("boxes", i) + " '" + name + "'", scene.boxes[i]});
+    obstacles.push_back(
+        {name.empty() ? item("boxes", i) : item("boxes", i) + " '" + name + "'", scene.boxes[i]});
   }
   std::erase_if(obstacles, [&](const Obstacle& o) { return o.box.z_min_m > high || o.box.z_max_m < low; });
   return obstacles;
@@ -66,11 +67,13 @@ const Obstacle* nearest(const std::vector<Obstacle>& obstacles, const Eigen::Vec
 std::optional<std::string> wallFault(const Scene& scene) {
   for (size_t i = 0; i < scene.walls.size(); ++i) {
     const Wall& wall = scene.walls[i];
-    if (wall.length() < 1e-3) return item("walls", i) + " has no length: its ends a and b are both " + text(wall.a);
+    if (wall.length() < 1e-3)
+      return item("walls", i) + " has no length: its ends a and b are both " + text(wall.a);
     if (!(wall.thickness_m > 0))
       return item("walls", i) + " has a thickness of " + text(wall.thickness_m) + " m: it must be positive";
     if (!(wall.z_max_m > wall.z_min_m))
-      return item("walls", i) + " has no height: z runs from " + text(wall.z_min_m) + " to " + text(wall.z_max_m);
+      return item("walls", i) + " has no height: z runs from " + text(wall.z_min_m) + " to " +
+             text(wall.z_max_m);
   }
   return std::nullopt;
 }
@@ -84,7 +87,8 @@ std::optional<std::string> doorwayFault(const Scene& scene) {
     for (const Wall& wall : scene.walls) on_wall |= openingOf(doorway, wall).has_value();
     if (!on_wall)
       return item("doorways", i) + " at " + text(Eigen::Vector2d(doorway.xyz.head<2>())) + ", " +
-             text(doorway.width_m) + " m wide, is not on a wall that holds it: put it on a wall's centre line";
+             text(doorway.width_m) +
+             " m wide, is not on a wall that holds it: put it on a wall's centre line";
   }
   return std::nullopt;
 }
@@ -127,16 +131,18 @@ std::optional<std::string> passageFault(const Scene& scene, const std::vector<Ob
     double distance = 0;
     const Obstacle* obstacle = nearest(obstacles, xy, distance);
     if (!obstacle || distance >= scene.path.clearance_m) return std::nullopt;
-    return what + " at " + text(xy) + (distance <= 0 ? " goes through " : " is " + text(distance) + " m from ") +
-           obstacle->name + ": keep " + text(scene.path.clearance_m) + " m";
+    return what + " at " + text(xy) +
+           (distance <= 0 ? " goes through " : " is " + text(distance) + " m from ") + obstacle->name +
+           ": keep " + text(scene.path.clearance_m) + " m";
   };
   const auto& points = scene.path.waypoints;
   for (size_t i = 0; i + 1 < points.size(); ++i) {
     const Eigen::Vector2d leg = points[i + 1].xy - points[i].xy;
     const int steps = static_cast<int>(std::ceil(leg.norm() / kSample_m));
     for (int k = 1; k < steps; ++k)
-      if (auto fault = blocked(points[i].xy + leg * (static_cast<double>(k) / steps),
-                               "the path from " + item("path.waypoints", i) + " to " + item("path.waypoints", i + 1)))
+      if (auto fault =
+              blocked(points[i].xy + leg * (static_cast<double>(k) / steps),
+                      "the path from " + item("path.waypoints", i) + " to " + item("path.waypoints", i + 1)))
         return fault;
   }
   // Arcs leave the legs.

@@ -39,8 +39,7 @@ class DriftingState {
 
   void move(const SE3& before, const SE3& after) {
     const double yaw_before = Attitude(before.rotation).yaw;
-    const double turned =
-        std::remainder(Attitude(after.rotation).yaw - yaw_before, 2 * std::numbers::pi);
+    const double turned = std::remainder(Attitude(after.rotation).yaw - yaw_before, 2 * std::numbers::pi);
     const Eigen::Vector2d step = (after.translation - before.translation).head<2>();
     const double walked = step.norm();
     // The step in the heading of the body, scaled, with the feet's slip at turns.

@@ -44,9 +44,9 @@ void PlanReader::fail(const std::string& key, const std::string& what) const {
 void PlanReader::refuse(const std::vector<std::string>& known, size_t max_distance) const {
   for (const auto& [key, value] : object_.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const auto nearest = std::min_element(known.begin(), known.end(), [&k = key](const auto& a, const auto& b) {
-      return editDistance(k, a) < editDistance(k, b);
-    });
+    const auto nearest = std::min_element(
+        known.begin(), known.end(),
+        [&k = key](const auto& a, const auto& b) { return editDistance(k, a) < editDistance(k, b); });
     if (editDistance(key, *nearest) <= max_distance)
       fail(key, "is not a key of a plan: did you mean '" + *nearest + "'?");
   }
@@ -99,7 +99,9 @@ std::vector<double> PlanReader::numbers(const char* key, size_t count) const {
   const auto& value = at(key);
   const bool right = value.is_array() && (count == 0 || value.size() == count) &&
                      std::all_of(value.begin(), value.end(), [](const auto& v) { return v.is_number(); });
-  if (!right) fail(key, count == 0 ? "must be a list of numbers" : "must be a list of " + std::to_string(count) + " numbers");
+  if (!right)
+    fail(key, count == 0 ? "must be a list of numbers"
+                         : "must be a list of " + std::to_string(count) + " numbers");
   return value.get<std::vector<double>>();
 }
 

@@ -6,9 +6,9 @@
 
 namespace sgraphs::simulate {
 
-// Pseudo-random numbers that depend on (seed, stream) alone, so that work may be done in any order: SplitMix64
-// (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014). The standard library's
-// distributions differ between implementations; these do not.
+// Pseudo-random numbers that depend on (seed, stream) alone, so that work may be done in any order:
+// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014). The standard
+// library's distributions differ between implementations; these do not.
 class RandomStream {
  public:
   RandomStream(uint64_t seed, uint64_t stream) : state_(mix(seed + kGolden) ^ mix(stream * kGolden + 1)) {}

@@ -12,7 +12,8 @@
 namespace sgraphs::simulate {
 namespace {
 
-double squaredDistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+double squaredDistanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                const Eigen::Vector3d& b) {
   const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
   return (p - a - s * (b - a)).squaredNorm();
 }
@@ -90,8 +91,8 @@ double RayCaster::distanceToSurface(const Eigen::Vector3d& point) const {
   const TriangleMesh& mesh = impl_->mesh;
   double best = std::numeric_limits<double>::max();
   for (const auto& t : mesh.triangles)
-    best = std::min(best,
-                    squaredDistance(point, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+    best =
+        std::min(best, squaredDistance(point, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
   return std::sqrt(best);
 }
 

@@ -34,7 +34,8 @@ std::pair<double, double> zRange(const PlanReader& in) {
 int floorOf(const PlanReader& in, const Scene& scene) {
   const int floor = in.integer("floor", 0);
   if (floor < 0 || floor >= static_cast<int>(scene.floors_z_m.size()))
-    in.fail("floor", "is " + std::to_string(floor) + ": floors lists " + std::to_string(scene.floors_z_m.size()));
+    in.fail("floor",
+            "is " + std::to_string(floor) + ": floors lists " + std::to_string(scene.floors_z_m.size()));
   return floor;
 }
 
@@ -79,7 +80,8 @@ void readBuilding(const PlanReader& in, Scene& scene) {
 }
 
 void readSensor(const PlanReader& in, SensorModel& sensor) {
-  in.allowOnly({"rpm", "start_azimuth_deg", "range_sigma_m", "min_range_m", "max_range_m", "grazing_drop_deg"});
+  in.allowOnly(
+      {"rpm", "start_azimuth_deg", "range_sigma_m", "min_range_m", "max_range_m", "grazing_drop_deg"});
   sensor.rpm = in.number("rpm", sensor.rpm, 300, 1200);
   sensor.start_azimuth_deg = in.number("start_azimuth_deg", sensor.start_azimuth_deg, 0, 360);
   sensor.range_sigma_m = in.number("range_sigma_m", sensor.range_sigma_m, 0, 1);
@@ -183,31 +185,34 @@ std::string knownScenes() {
 std::string findScene(const std::string& scene) {
   const fs::path path(scene);
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   for (const char* mesh : {".ply", ".obj", ".stl", ".dae", ".sdf"})
-    if (extension == mesh) throw UsageError("scene '" + scene + "': meshes are not in this version: give a plan.json");
+    if (extension == mesh)
+      throw UsageError("scene '" + scene + "': meshes are not in this version: give a plan.json");
   if (fs::is_regular_file(path)) return scene;
   if (fs::is_regular_file(path / "plan.json")) return (path / "plan.json").string();
   if (scene.find('/') == std::string::npos)
     for (const fs::path& folder : sceneFolders())
       if (fs::is_regular_file(folder / scene / "plan.json"))
         return (folder / scene / "plan.json").lexically_normal().string();
-  throw UsageError("scene '" + scene + "' is neither a plan.json nor a shipped scene: give a file, or one of " +
-                   knownScenes());
+  throw UsageError("scene '" + scene +
+                   "' is neither a plan.json nor a shipped scene: give a file, or one of " + knownScenes());
 }
 
 Scene parseScene(const std::string& text, const std::string& where) {
   const json plan = parseJson(text, where);
   const PlanReader in(plan, where, "");
-  in.refuseMisspelt({"scene", "seed", "duration_s", "T_body_lidar", "floors", "rooms", "walls", "doorways", "boxes",
-                     "slabs", "sensor", "path", "start_utime"});
+  in.refuseMisspelt({"scene", "seed", "duration_s", "T_body_lidar", "floors", "rooms", "walls", "doorways",
+                     "boxes", "slabs", "sensor", "path", "start_utime"});
   Scene scene;
   scene.name = in.text("scene", "");
   if (in.has("start_utime")) scene.start.us = static_cast<int64_t>(in.number("start_utime", 0, 0, 4e15));
   if (in.has("T_body_lidar")) scene.T_body_lidar = in.object("T_body_lidar").transform();
   readBuilding(in, scene);
   if (in.has("sensor")) readSensor(in.object("sensor"), scene.sensor);
-  if (!in.has("path")) in.fail("path", "is missing: give {\"waypoints\": [[x, y], …]} (config/scenes/README.md)");
+  if (!in.has("path"))
+    in.fail("path", "is missing: give {\"waypoints\": [[x, y], …]} (config/scenes/README.md)");
   readPath(in.object("path"), scene);
   if (const auto fault = findFault(scene)) throw Error(where + ": " + *fault);
   return scene;
@@ -226,7 +231,8 @@ void writePlan(const std::string& path, const Scene& scene) {
   ordered_json plan;
   plan["scene"] = scene.name;
   const Eigen::Quaterniond& q = scene.T_body_lidar.rotation;
-  plan["T_body_lidar"] = {{"xyz", listOf(scene.T_body_lidar.translation)}, {"qxyzw", {q.x(), q.y(), q.z(), q.w()}}};
+  plan["T_body_lidar"] = {{"xyz", listOf(scene.T_body_lidar.translation)},
+                          {"qxyzw", {q.x(), q.y(), q.z(), q.w()}}};
   plan["floors"] = scene.floors_z_m;
   plan["rooms"] = plan["walls"] = plan["doorways"] = plan["boxes"] = ordered_json::array();
   for (const Room& room : scene.rooms) {

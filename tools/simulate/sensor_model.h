@@ -8,11 +8,12 @@ namespace sgraphs::simulate {
 // What can be chosen about the simulated VLP-16.
 struct SensorModel {
   double rpm = 600;
-  double start_azimuth_deg = 0;    // of the first firing, clockwise from the sensor's x axis forward
-  double range_sigma_m = 0.015;    // Gaussian, independent per return
-  double min_range_m = 0.3;        // nearer surfaces give no return
-  double max_range_m = 100.0;      // farther surfaces give no return
-  double grazing_drop_deg = 80.0;  // beyond this incidence returns are lost with growing probability; 90: none
+  double start_azimuth_deg = 0;  // of the first firing, clockwise from the sensor's x axis forward
+  double range_sigma_m = 0.015;  // Gaussian, independent per return
+  double min_range_m = 0.3;      // nearer surfaces give no return
+  double max_range_m = 100.0;    // farther surfaces give no return
+  double grazing_drop_deg =
+      80.0;  // beyond this incidence returns are lost with growing probability; 90: none
 
   // Exact ranges to every surface in reach, for tests.
   static SensorModel noiseFree() {
@@ -37,8 +38,8 @@ inline constexpr double kRangeStep_m = 0.002;
 inline constexpr std::array<double, kLasers> kElevation_deg{-15, 1, -13, 3,  -11, 5,  -9, 7,
                                                             -7,  9, -5,  11, -3,  13, -1, 15};
 // Height of each laser's origin over the sensor's.
-inline constexpr std::array<double, kLasers> kVerticalOffset_mm{
-    11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1, 5.1, -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
+inline constexpr std::array<double, kLasers> kVerticalOffset_mm{11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
+                                                                5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
 // Ring of a laser, counted from the lowest.
 constexpr int ring(int laser) {
   return laser % 2 == 0 ? laser / 2 : 8 + laser / 2;

@@ -50,8 +50,8 @@ SensorSimulator::Return SensorSimulator::measure(int laser, double offset_us, do
                                                  double chance) const {
   const auto i = static_cast<size_t>(laser);
   const double azimuth = azimuthDeg(offset_us) * kDegree_rad;
-  const Eigen::Vector3d ray_lidar(cos_elevation_[i] * std::cos(azimuth), -cos_elevation_[i] * std::sin(azimuth),
-                                  sin_elevation_[i]);
+  const Eigen::Vector3d ray_lidar(cos_elevation_[i] * std::cos(azimuth),
+                                  -cos_elevation_[i] * std::sin(azimuth), sin_elevation_[i]);
   const SE3 T_building_lidar = trajectory_.poseAtOffset(offset_us * 1e-6) * T_body_lidar_;
   const Eigen::Vector3d origin = T_building_lidar * Eigen::Vector3d(0, 0, kVerticalOffset_mm[i] * 1e-3);
   const auto hit = building_.cast(origin, T_building_lidar.rotation * ray_lidar, model_.max_range_m);

@@ -18,9 +18,9 @@ struct SensorPacket {
 };
 
 // A VLP-16 carried along a trajectory: every laser fires at its own instant, from where the sensor is then.
-// Firing sequence k begins k * 55.296 us after the trajectory's start; the azimuth advances with time. Results
-// depend on (building, trajectory, model, seed) and on the index asked for only, not on the number of threads
-// or the order of calls. All methods are safe to call from several threads.
+// Firing sequence k begins k * 55.296 us after the trajectory's start; the azimuth advances with time.
+// Results depend on (building, trajectory, model, seed) and on the index asked for only, not on the number of
+// threads or the order of calls. All methods are safe to call from several threads.
 //
 // lidar frame (ROS): x forward = R cos(w) cos(az), y left = -R cos(w) sin(az), z up = R sin(w) + the laser's
 // offset.

@@ -30,7 +30,7 @@ LidarScan simulateScan(const SimulatedWorld& world, const SE3& T_building_lidar,
 // One revolution from a sensor that moves with a constant twist (in lidar: [m/s], [rad/s]);
 // T_building_lidar_begin holds at the first firing.
 LidarScan simulateMovingScan(const SimulatedWorld& world, const SE3& T_building_lidar_begin,
-                             const Vector6d& twist_lidar,
-                             const SensorModel& model = SensorModel::noiseFree(), uint64_t seed = 0);
+                             const Vector6d& twist_lidar, const SensorModel& model = SensorModel::noiseFree(),
+                             uint64_t seed = 0);
 
 }  // namespace sgraphs::simulate

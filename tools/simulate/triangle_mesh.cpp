@@ -24,8 +24,12 @@ void TriangleMesh::addBox(const Eigen::Vector3d& center, const Eigen::Vector3d& 
     const double x = (i & 1 ? 0.5 : -0.5) * size.x(), y = (i & 2 ? 0.5 : -0.5) * size.y();
     p[i] = center + Eigen::Vector3d(c * x - s * y, s * x + c * y, (i & 4 ? 0.5 : -0.5) * size.z());
   }
-  for (const auto& f : {std::array<size_t, 4>{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3},
-                        {0, 2, 3, 1}, {4, 5, 7, 6}})
+  for (const auto& f : {std::array<size_t, 4>{0, 4, 6, 2},
+                        {1, 3, 7, 5},
+                        {0, 1, 5, 4},
+                        {2, 6, 7, 3},
+                        {0, 2, 3, 1},
+                        {4, 5, 7, 6}})
     addQuad({p[f[0]], p[f[1]], p[f[2]], p[f[3]]}, surface_reflectivity);
 }
 

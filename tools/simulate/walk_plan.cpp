@@ -44,7 +44,9 @@ class Run {
     if (element.length_m > 1e-9) elements_.push_back(element);
   }
 
-  double length() const { return elements_.empty() ? 0 : elements_.back().begin_m + elements_.back().length_m; }
+  double length() const {
+    return elements_.empty() ? 0 : elements_.back().begin_m + elements_.back().length_m;
+  }
 
   void plan(const WalkPath& path) {
     const int cells = std::max(4, static_cast<int>(std::ceil(length() / kStep_m)));
@@ -88,8 +90,7 @@ class Run {
     WalkState state;
     state.yaw_rad = e.yaw_rad + turned;
     // Chord of the arc, in the direction half-way between the tangents.
-    const double chord =
-        std::abs(turned) < 1e-9 ? along : 2 * std::sin(0.5 * turned) / e.curvature;
+    const double chord = std::abs(turned) < 1e-9 ? along : 2 * std::sin(0.5 * turned) / e.curvature;
     const double direction = e.yaw_rad + 0.5 * turned;
     state.xy = e.xy + chord * Eigen::Vector2d(std::cos(direction), std::sin(direction));
     state.activity = activityOf(speed, speed * e.curvature);
@@ -198,7 +199,8 @@ void WalkPlan::run(size_t first, size_t last) {
     if (std::abs(angle) < 1e-9) continue;
     const double sign = angle > 0 ? 1.0 : -1.0;
     course->add({0, radius * std::abs(angle), at.xy, at.yaw_rad, sign / radius});
-    at.xy = points[i + 1].xy + tangent * Eigen::Vector2d(std::cos(heading + angle), std::sin(heading + angle));
+    at.xy =
+        points[i + 1].xy + tangent * Eigen::Vector2d(std::cos(heading + angle), std::sin(heading + angle));
     at.yaw_rad += angle;
   }
   course->plan(path_);
