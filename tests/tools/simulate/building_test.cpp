@@ -142,23 +142,5 @@ TEST(BuildingTest, DefaultSlabsCloseEveryStorey) {
   EXPECT_NEAR(height(4, 1), 1.5, 1e-5);
 }
 
-TEST(FindFaultTest, GoodSceneHasNone) {
-  EXPECT_EQ(findFault(makeBoxRoom(4, 4)), std::nullopt);
-}
-
-TEST(FindFaultTest, WalkThroughClosedWallIsNamedAndThroughDoorwayIsNot) {
-  Scene scene = makeBoxRoom(6, 4);
-  scene.walls.push_back({{3, 0}, {3, 4}, 0.1, 0, 2.8});
-  scene.path.waypoints = {{{1, 2}, 0}, {{5, 2}, 0}};
-  const auto fault = findFault(scene);
-  ASSERT_TRUE(fault.has_value());
-  EXPECT_NE(fault->find("walls[4]"), std::string::npos) << *fault;
-  EXPECT_NE(fault->find("waypoints[0]"), std::string::npos) << *fault;
-  scene.doorways.push_back({0, {3, 2, 0}, 0.95, 2.1});
-  EXPECT_EQ(findFault(scene), std::nullopt);
-  scene.doorways[0].height_m = 0.6;  // a hatch that the body does not fit through
-  EXPECT_NE(findFault(scene), std::nullopt);
-}
-
 }  // namespace
 }  // namespace sgraphs::simulate

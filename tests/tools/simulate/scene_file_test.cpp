@@ -66,6 +66,10 @@ TEST(SceneFileTest, BrokenJsonIsNamedWithItsLine) {
   }
 }
 
+TEST(SceneFileTest, NumberOutOfRangeIsAnError) {
+  EXPECT_THROW(parseScene("{\"floors\": [1e999]}", "plan.json"), Error);
+}
+
 TEST(SceneFileTest, EachBadItemIsNamed) {
   json plan = goodPlan();
   EXPECT_EQ(complaint(plan), "");
