@@ -64,7 +64,7 @@ void BackendNode::onSession(const session_t& m) {
     if (stage != "odometry" && stage != "backend")
       spdlog::warn("SESSION lists stage '{}', which this version does not have: rounds go on without it",
                    stage);
-  advance();
+  for (const auto& handle : std::exchange(early_, {})) handle();
 }
 
 void BackendNode::onOdometry(const odometry_t& m) {
