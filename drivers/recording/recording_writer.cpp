@@ -1,0 +1,95 @@
+#include "drivers/recording/recording_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/bus/channels.h"
+#include "drivers/velodyne/vlp16_packet.h"
+
+namespace sgraphs {
+namespace {
+
+// 20 packets are 25 kB and 26 ms: one datagram, and four messages per revolution at 600 rpm.
+constexpr size_t kMaxPacketsPerMessage = 20;
+constexpr Duration kSessionInterval{1'000'000};
+
+Time lastFiring(const VelodynePacket& packet) {
+  Vlp16Packet parsed;
+  // A packet that does not parse is recorded all the same: whoever decodes the log refuses and counts it.
+  if (parsePacket(packet.bytes, parsed) != PacketFault::kNone) return packet.time;
+  return packet.time + Duration{std::llround(parsed.lastFiring_us())};
+}
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(LogWriter& log, const Session& session)
+    : log_(log), session_(session), next_session_(session.start), now_(session.start) {
+  if (session.id == 0) throw std::logic_error("RecordingWriter: a session's id is never 0");
+  tick(session.start);
+}
+
+void RecordingWriter::tick(Time now) {
+  while (next_session_ <= now) {
+    session_t message = toMessage(session_, next_session_);
+    message.header = header(channels::kSession.name, next_session_);
+    now_ = std::max(now_, next_session_);
+    write(log_, now_.us, channels::kSession, message);
+    next_session_ = next_session_ + kSessionInterval;
+  }
+  now_ = std::max(now_, now);
+}
+
+header_t RecordingWriter::header(const std::string& channel, Time time) {
+  header_t header{};
+  header.session = session_.id;
+  header.seq = next_seq_[channel]++;
+  header.utime = time.us;
+  return header;
+}
+
+void RecordingWriter::addPacket(const VelodynePacket& packet) {
+  pending_.push_back(packet);
+  const bool cut = cutter_.step(packet.bytes) >= 0;
+  if (cut || pending_.size() == kMaxPacketsPerMessage) flushPackets(cut);
+}
+
+void RecordingWriter::flushPackets(bool last_part) {
+  if (pending_.empty()) return;
+  tick(lastFiring(pending_.back()));
+  velodyne_packets_t message = toMessage(pending_, revolution_, part_, last_part);
+  message.header = header(channels::kVelodynePackets.name, pending_.front().time);
+  write(log_, now_.us, channels::kVelodynePackets, message);
+  pending_.clear();
+  revolution_ += last_part;
+  part_ = last_part ? 0 : part_ + 1;
+}
+
+void RecordingWriter::addScan(const LidarScan& scan) {
+  tick(scan.end);
+  for (lidar_points_t& message : toMessages(scan)) {
+    message.header = header(channels::kLidarPoints.name, scan.end);
+    write(log_, now_.us, channels::kLidarPoints, message);
+  }
+}
+
+void RecordingWriter::addOdometry(const BodyOdometry& odometry) {
+  tick(odometry.time);
+  spot_odometry_t message = toMessage(odometry);
+  message.header = header(channels::kSpotOdometry.name, odometry.time);
+  write(log_, now_.us, channels::kSpotOdometry, message);
+}
+
+void RecordingWriter::finish() {
+  flushPackets(false);
+  stream_end_t message{};
+  for (const auto& [channel, next] : next_seq_) {
+    message.channel.push_back(channel);
+    message.last_seq.push_back(next - 1);
+  }
+  message.num_channels = static_cast<int32_t>(message.channel.size());
+  message.header = header(channels::kStreamEnd.name, now_);
+  write(log_, now_.us, channels::kStreamEnd, message);
+}
+
+}  // namespace sgraphs
