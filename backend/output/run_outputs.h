@@ -43,7 +43,7 @@ struct RunRecord {
 // odometry.tum, map.ply, graph.json, graph.g2o, floorplan_f*.svg and .png, occupancy_f*.pgm and .yaml,
 // summary.json. Creates the folder. The same graph and scans give the same bytes, summary.json's wall times
 // excepted. Throws Error naming the file that cannot be written; a run without a keyframe writes what there
-// is (no map and no plans).
+// is (an empty map and no plans).
 void writeOutputs(const RunRecord& record, const std::string& out_dir);
 
 }  // namespace sgraphs
