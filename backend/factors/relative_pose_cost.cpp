@@ -31,12 +31,15 @@ bool RelativePoseCost::Evaluate(double const* const* parameters, double* residua
   if (jacobians == nullptr) return true;
 
   const Matrix6d J_j = sqrt_information_ * se3RightJacobianInverse(error);
-  using AmbientJacobian = Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>;
-  if (jacobians[0] != nullptr)
-    AmbientJacobian(jacobians[0]) =
-        -(J_j * se3Adjoint(X_i_j.inverse())) * PoseManifold::minusJacobian(parameters[0]);
-  if (jacobians[1] != nullptr)
-    AmbientJacobian(jacobians[1]) = J_j * PoseManifold::minusJacobian(parameters[1]);
+  using AmbientJacobian = Eigen::Matrix<double, 6, 7, Eigen::RowMajor>;
+  if (jacobians[0] != nullptr) {
+    Eigen::Map<AmbientJacobian> J(jacobians[0]);
+    J = -(J_j * se3Adjoint(X_i_j.inverse())) * PoseManifold::minusJacobian(parameters[0]);
+  }
+  if (jacobians[1] != nullptr) {
+    Eigen::Map<AmbientJacobian> J(jacobians[1]);
+    J = J_j * PoseManifold::minusJacobian(parameters[1]);
+  }
   return true;
 }
 
