@@ -1,7 +1,6 @@
 #include "backend/solver/incremental_solver.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "backend/solver/marginal_covariance.h"
 #include "backend/solver/region_solve.h"
@@ -67,6 +66,7 @@ class IncrementalSolver::Impl {
 
   Report solve(bool whole) {
     Report report;
+    if (settled_) return report;
     whole = whole || unfinished_ || static_cast<int>(graph.states.size()) <= options_.small_graph;
     if (!whole && !seeds_.empty()) whole = !solveLocal(report);
     seeds_.clear();
@@ -123,7 +123,6 @@ class IncrementalSolver::Impl {
     for (size_t i = 0; i < graph.states.size(); ++i)
       if (!graph.states[i].held && !graph.states[i].factors.empty()) free.push_back(static_cast<int>(i));
     const RegionOutcome outcome = solveRegion(graph, free, options_.max_iterations);
-    if (!outcome.usable) throw std::logic_error("solver: Ceres failed on the whole graph");
     report.whole = true;
     report.converged = outcome.converged;
     report.iterations += outcome.iterations;
@@ -203,8 +202,9 @@ int IncrementalSolver::numResiduals(FactorId factor) const {
   return impl_->graph.factors.at(static_cast<size_t>(factor)).cost->num_residuals();
 }
 
-Matrix6d IncrementalSolver::covariance(StateId pose) const {
-  return marginalCovariance(impl_->graph, pose);
+std::optional<Matrix6d> IncrementalSolver::covariance(StateId pose) const {
+  const std::optional<Eigen::MatrixXd> covariance = marginalCovariance(impl_->graph, pose);
+  return covariance ? std::optional<Matrix6d>(*covariance) : std::nullopt;
 }
 
 }  // namespace sgraphs

@@ -73,8 +73,8 @@ class IncrementalSolver {
   int numResiduals(FactorId factor) const;
 
   // Marginal covariance of a pose at the present states, all others free. Costs a factorisation of the whole
-  // graph. Throws std::logic_error if the factors leave a state undetermined.
-  Matrix6d covariance(StateId pose) const;
+  // graph. None if the factors leave a state undetermined.
+  std::optional<Matrix6d> covariance(StateId pose) const;
 
  private:
   class Impl;

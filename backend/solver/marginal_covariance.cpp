@@ -2,7 +2,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <stdexcept>
 
 namespace sgraphs {
 namespace {
@@ -46,19 +45,18 @@ Eigen::SparseMatrix<double> information(const StateGraph& graph, const std::vect
 
 }  // namespace
 
-Eigen::MatrixXd marginalCovariance(const StateGraph& graph, int state) {
+std::optional<Eigen::MatrixXd> marginalCovariance(const StateGraph& graph, int state) {
   const int n = graph.manifold(graph.states.at(static_cast<size_t>(state)).kind).TangentSize();
   int size = 0;
   const std::vector<int> columns = columnsOf(graph, size);
   const int column = columns[static_cast<size_t>(state)];
-  if (column < 0) return Eigen::MatrixXd::Zero(n, n);
+  if (column < 0) return Eigen::MatrixXd(Eigen::MatrixXd::Zero(n, n));
   const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(information(graph, columns, size));
-  if (cholesky.info() != Eigen::Success)
-    throw std::logic_error("marginal covariance: the factors leave a state undetermined");
+  if (cholesky.info() != Eigen::Success) return std::nullopt;
   Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(size, n);
   rhs.middleRows(column, n).setIdentity();
   const Eigen::MatrixXd block = cholesky.solve(rhs).middleRows(column, n);
-  return 0.5 * (block + block.transpose());
+  return Eigen::MatrixXd(0.5 * (block + block.transpose()));
 }
 
 }  // namespace sgraphs
