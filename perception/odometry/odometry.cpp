@@ -1,0 +1,272 @@
+#include "perception/odometry/odometry.h"
+
+#include <tbb/task_arena.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "perception/odometry/floor_under_start.h"
+#include "perception/odometry/keyframe_builder.h"
+#include "perception/odometry/keyframe_registration.h"
+#include "perception/odometry/legs_motion.h"
+#include "perception/odometry/registration.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr double kMerge_m = 0.08;  // a patch this close to a surface belongs to it
+constexpr int kMinMatches = 60;    // fewer matches are no registration
+constexpr double kMinShare = 0.08;
+constexpr double kDegenerateSigma_m = 0.03;  // a direction that one scan knows worse than this is not seen
+constexpr double kDegenerateSigma_rad = 0.01;
+constexpr Duration kMaxGap{500000};  // a longer silence begins a new local motion
+constexpr int64_t kPruneEvery = 50;  // scans
+constexpr int kMaxFailures = 10;
+
+Matrix6d diagonalInformation(double sigma_m, double sigma_rad) {
+  Vector6d d;
+  d << Eigen::Vector3d::Constant(1.0 / (sigma_m * sigma_m)),
+      Eigen::Vector3d::Constant(1.0 / (sigma_rad * sigma_rad));
+  return d.asDiagonal();
+}
+
+// Directions of motion that the matches alone do not determine: eigenvalues of the information of translation
+// with rotation marginalised, and the reverse.
+int countDegenerate(const Matrix6d& information) {
+  const auto count = [&](int own, int other, double sigma) {
+    const Eigen::Matrix3d A = information.block<3, 3>(own, own), B = information.block<3, 3>(own, other);
+    const Eigen::Matrix3d C = information.block<3, 3>(other, other) + 1e-6 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d marginal = A - B * C.ldlt().solve(B.transpose());
+    const Eigen::Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(marginal).eigenvalues();
+    return static_cast<int>((values.array() < 1.0 / (sigma * sigma)).count());
+  };
+  return count(0, 3, kDegenerateSigma_m) + count(3, 0, kDegenerateSigma_rad);
+}
+
+}  // namespace
+
+class Odometry::Impl {
+ public:
+  Impl(const OdometryConfig& config, OdometryMode mode, const SE3& T_body_lidar)
+      : config_(config),
+        mode_(mode),
+        T_body_lidar_(T_body_lidar),
+        map_(config.registration.cell_m),
+        builder_(config.keyframes, T_body_lidar),
+        neighbours_(config.registration, config.covariance),
+        arena_(config.threads) {}
+
+  std::optional<OdometryOutput> step(const LidarScan& scan, std::span<const BodyOdometry> legs) {
+    std::optional<OdometryOutput> output;
+    arena_.execute([&] { output = stepInArena(scan, legs); });
+    return output;
+  }
+
+ private:
+  std::optional<OdometryOutput> stepInArena(const LidarScan& scan, std::span<const BodyOdometry> legs) {
+    const std::vector<int32_t> kept = prefilter(scan, T_body_lidar_, config_.prefilter);
+    if (static_cast<int>(kept.size()) < config_.prefilter.min_points) return std::nullopt;
+    const std::vector<Surfel> surfels =
+        extractSurfels(scan, kept, T_body_lidar_, config_.surfels, config_.threads);
+    const int segments = config_.registration.segments;
+    std::optional<std::vector<SE3>> measured;
+    if (mode_ != OdometryMode::kLidar) measured = legsMotion(legs, scan.begin, scan.end, segments);
+
+    OdometryOutput output;
+    ScanMotion motion = predict(scan, legs, measured);
+    estimate(surfels, measured, motion, output.estimate);
+    remember(surfels, motion, output.estimate);
+    builder_.add(scan, kept, surfels, motion);
+
+    OdometryEstimate& e = output.estimate;
+    e.time = scan.end;
+    e.scan = next_scan_++;
+    e.T_odom_body = motion.T_odom_body.back();
+    e.twist_body = previous_twist_;
+    const bool lost_overlap = e.inlier_share >= 0 && e.inlier_share < config_.keyframes.min_inlier_share &&
+                              e.scan - last_keyframe_scan_ >= 5;
+    e.is_keyframe = builder_.due(e.T_odom_body) || lost_overlap;
+    if (e.is_keyframe) output.keyframe = makeKeyframe(e, surfels, legs);
+    e.keyframe = KeyframeId{next_keyframe_ - 1};
+    return output;
+  }
+
+  // Knots at the motion expected from the legs, else from the twist of the last scan.
+  ScanMotion predict(const LidarScan& scan, std::span<const BodyOdometry> legs,
+                     const std::optional<std::vector<SE3>>& measured) {
+    const int segments = config_.registration.segments;
+    ScanMotion motion;
+    motion.end = scan.end;
+    motion.begin = scan.end - Duration{std::max<int64_t>((scan.end - scan.begin).us, 1000)};
+    SE3 begin;
+    if (!has_previous_) {
+      const std::optional<SE3> start = measured ? legsPoseAt(legs, scan.begin) : std::nullopt;
+      if (start) begin = *start;
+    } else {
+      // Scans follow each other without a gap, except where one was lost.
+      const Duration gap = motion.begin - previous_end_;
+      begin = gap < kMaxGap ? previous_pose_ * se3Exp(gap.seconds() * previous_twist_) : previous_pose_;
+      if (gap.us > 1000 && mode_ != OdometryMode::kLidar) {
+        const auto from = legsPoseAt(legs, previous_end_), to = legsPoseAt(legs, motion.begin);
+        if (from && to) begin = previous_pose_ * (from->inverse() * *to);
+      }
+      gap_ = gap;
+    }
+    motion.T_odom_body.push_back(begin);
+    const SE3 piece = se3Exp((motion.end - motion.begin).seconds() / segments * previous_twist_);
+    for (int j = 0; j < segments; ++j)
+      motion.T_odom_body.push_back(motion.T_odom_body.back() *
+                                   (measured ? (*measured)[static_cast<size_t>(j)] : piece));
+    return motion;
+  }
+
+  void estimate(const std::vector<Surfel>& surfels, const std::optional<std::vector<SE3>>& measured,
+                ScanMotion& motion, OdometryEstimate& e) {
+    const RegistrationConfig& c = config_.registration;
+    const SE3 moved = motion.T_odom_body.front().inverse() * motion.T_odom_body.back();
+    e.covariance = legsCovariance(moved, config_.legs);
+    e.extrapolated = has_previous_ && mode_ != OdometryMode::kLidar && !measured;
+    registered_covariance_ = Matrix6d::Zero();
+    if (mode_ == OdometryMode::kEncoder || map_.empty()) return;
+
+    MotionPrior prior;
+    // After a silence the begin of the scan is a guess.
+    const double gap_s = std::max(0.0, gap_.seconds() - 0.005);
+    prior.begin_information =
+        diagonalInformation(c.begin_sigma_m + 0.5 * gap_s, c.begin_sigma_rad + 0.5 * gap_s);
+    if (measured) {
+      for (const SE3& piece : *measured) {
+        prior.relative.push_back(piece);
+        prior.relative_information.push_back(legsCovariance(piece, config_.legs).inverse());
+      }
+    }
+    const double dt = motion.step().seconds();
+    prior.has_previous_twist = has_twist_;
+    prior.previous_twist = previous_twist_;
+    prior.acceleration_information =
+        diagonalInformation(c.acceleration_sigma_mps2 * dt * dt, c.angular_acceleration_sigma_rps2 * dt * dt);
+    const ScanMotion predicted = motion;
+    const RegistrationResult result = registerScan(surfels, map_, prior, c, config_.threads, motion);
+    e.inlier_share = result.inlier_share;
+    e.residual_rms_m = result.residual_rms_m;
+    e.num_degenerate = countDegenerate(result.lidar_information);
+    if (result.matches < kMinMatches || result.inlier_share < kMinShare ||
+        !motion.T_odom_body.back().isFinite()) {
+      motion = predicted;
+      e.extrapolated = true;
+      ++failures_;
+      return;
+    }
+    failures_ = 0;
+    registered_covariance_ = config_.covariance.scale * result.covariance;
+    // Against the previous scan: both ends err.
+    e.covariance = registered_covariance_ + previous_registered_covariance_;
+  }
+
+  // The scan enters the local map; the twist of its last piece predicts the next.
+  void remember(const std::vector<Surfel>& surfels, const ScanMotion& motion, const OdometryEstimate& e) {
+    // A scan that did not fit stays out, unless the robot has left the map for good.
+    if (mode_ != OdometryMode::kEncoder && (failures_ == 0 || failures_ > kMaxFailures))
+      for (const Surfel& s : surfels) map_.insert(s, motion.at(s.time_us), kMerge_m);
+    if (next_scan_ % kPruneEvery == 0)
+      map_.prune(motion.T_odom_body.back().translation, config_.registration.map_radius_m);
+    const size_t n = motion.T_odom_body.size();
+    const bool still_first = !has_previous_;
+    if (!still_first || mode_ != OdometryMode::kLidar) {
+      previous_twist_ =
+          se3Log(motion.T_odom_body[n - 2].inverse() * motion.T_odom_body[n - 1]) / motion.step().seconds();
+      has_twist_ = true;
+    }
+    edge_covariance_ = composeCovariance(edge_covariance_,
+                                         previous_pose_.inverse() * motion.T_odom_body.back(), e.covariance);
+    previous_registered_covariance_ = registered_covariance_;
+    previous_pose_ = motion.T_odom_body.back();
+    previous_end_ = motion.end;
+    has_previous_ = true;
+  }
+
+  Keyframe makeKeyframe(const OdometryEstimate& e, const std::vector<Surfel>& scan_surfels,
+                        std::span<const BodyOdometry> legs) {
+    std::vector<Surfel> surfels;
+    const SE3 previous = T_odom_keyframe_;
+    Keyframe keyframe = builder_.build(e.T_odom_body, surfels);
+    keyframe.id = KeyframeId{next_keyframe_++};
+    keyframe.time = e.time;
+    keyframe.scan = e.scan;
+    setUp(keyframe, scan_surfels, legs);
+    if (keyframe.id.value > 0) {
+      RelativePose r;
+      r.from = KeyframeId{keyframe.id.value - 1};
+      r.to = keyframe.id;
+      r.T_from_to = previous.inverse() * e.T_odom_body;
+      r.covariance = odometryEdgeCovariance(r.T_from_to);
+      keyframe.relative_poses.push_back(r);
+    }
+    for (const RelativePose& r : neighbours_.step(keyframe.id, e.T_odom_body, surfels, config_.threads))
+      keyframe.relative_poses.push_back(r);
+    T_odom_keyframe_ = e.T_odom_body;
+    keyframe_covariance_ = registered_covariance_;
+    edge_covariance_ = Matrix6d::Zero();
+    last_keyframe_scan_ = e.scan;
+    return keyframe;
+  }
+
+  // A registration against the local map errs anew at each end, it does not add up over the scans between;
+  // what was only predicted or counted by the legs does.
+  Matrix6d odometryEdgeCovariance(const SE3& T_from_to) const {
+    const CovarianceConfig& c = config_.covariance;
+    Matrix6d covariance = edge_covariance_;
+    if (registered_covariance_.trace() > 0)
+      covariance = composeCovariance(keyframe_covariance_, T_from_to, registered_covariance_);
+    covariance.diagonal().head<3>().array() += c.floor_m * c.floor_m;
+    covariance.diagonal().tail<3>().array() += c.floor_rad * c.floor_rad;
+    return covariance;
+  }
+
+  void setUp(Keyframe& keyframe, const std::vector<Surfel>& surfels,
+             std::span<const BodyOdometry> legs) const {
+    if (!legs.empty() && mode_ != OdometryMode::kLidar) {
+      if (const std::optional<SE3> pose = legsPoseAt(legs, keyframe.time)) {
+        keyframe.up_body = pose->rotation.conjugate() * Eigen::Vector3d::UnitZ();
+        keyframe.up_sigma_rad = config_.legs.up_sigma_rad;
+      }
+    } else if (keyframe.id.value == 0) {
+      if (const std::optional<UpDirection> up = floorUnderStart(surfels)) {
+        keyframe.up_body = up->up_body;
+        keyframe.up_sigma_rad = up->sigma_rad;
+      }
+    }
+  }
+
+  OdometryConfig config_;
+  OdometryMode mode_;
+  SE3 T_body_lidar_;
+  SurfelMap map_;
+  KeyframeBuilder builder_;
+  KeyframeRegistration neighbours_;
+  tbb::task_arena arena_;
+
+  bool has_previous_ = false, has_twist_ = false;
+  SE3 previous_pose_;
+  Time previous_end_;
+  Duration gap_;
+  Vector6d previous_twist_ = Vector6d::Zero();
+  Matrix6d registered_covariance_ = Matrix6d::Zero();           // of the newest scan; zero if not registered
+  Matrix6d previous_registered_covariance_ = Matrix6d::Zero();  // of the scan before
+  Matrix6d keyframe_covariance_ = Matrix6d::Zero();             // of the scan that became the last keyframe
+  Matrix6d edge_covariance_ = Matrix6d::Zero();                 // summed up since the last keyframe
+  SE3 T_odom_keyframe_;
+  int failures_ = 0;  // scans in a row that found no place in the map
+  int64_t next_scan_ = 0, next_keyframe_ = 0, last_keyframe_scan_ = 0;
+};
+
+Odometry::Odometry(const OdometryConfig& config, OdometryMode mode, const SE3& T_body_lidar)
+    : impl_(std::make_unique<Impl>(config, mode, T_body_lidar)) {}
+Odometry::~Odometry() = default;
+
+std::optional<OdometryOutput> Odometry::step(const LidarScan& scan,
+                                             std::span<const BodyOdometry> body_odometry) {
+  return impl_->step(scan, body_odometry);
+}
+
+}  // namespace sgraphs

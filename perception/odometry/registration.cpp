@@ -1,0 +1,245 @@
+#include "perception/odometry/registration.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace sgraphs {
+namespace {
+
+constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
+
+using Upper = Eigen::Matrix<double, 6, 6>;
+
+// Sums of one block of patches. Piece j adds to the knots j and j+1.
+struct Sums {
+  std::vector<Upper> diagonal, off_diagonal;  // off_diagonal[j]: knot j with knot j+1
+  std::vector<Vector6d> gradient;
+  Upper rigid = Upper::Zero();
+  double squares_m2 = 0;
+  int matches = 0;
+
+  explicit Sums(size_t knots)
+      : diagonal(knots, Upper::Zero()),
+        off_diagonal(knots, Upper::Zero()),
+        gradient(knots, Vector6d::Zero()) {}
+
+  void add(const Sums& other) {
+    for (size_t j = 0; j < diagonal.size(); ++j) {
+      diagonal[j] += other.diagonal[j];
+      off_diagonal[j] += other.off_diagonal[j];
+      gradient[j] += other.gradient[j];
+    }
+    rigid += other.rigid;
+    squares_m2 += other.squares_m2;
+    matches += other.matches;
+  }
+};
+
+// Pieces of the motion, prepared once per iteration.
+struct Pieces {
+  explicit Pieces(const ScanMotion& motion) {
+    for (size_t j = 0; j + 1 < motion.T_odom_body.size(); ++j)
+      twist.push_back(se3Log(motion.T_odom_body[j].inverse() * motion.T_odom_body[j + 1]));
+  }
+  std::vector<Vector6d> twist;
+};
+
+// Residual and weight of one match: r = n . (T p - mu), its derivative by the right perturbation of T being
+// [R^T n; p x R^T n] (translation, rotation).
+void addPatch(const Surfel& s, const ScanMotion& motion, const Pieces& pieces, const SurfelMap& map,
+              const RegistrationConfig& config, double gate_m, double min_cos, Sums& sums) {
+  const auto [knot, share] = motion.placeOf(s.time_us);
+  const SE3 T = motion.T_odom_body[knot] * se3Exp(share * pieces.twist[knot]);
+  const Eigen::Vector3d point = T * s.mean;
+  const MapCell* cell = map.match(point, T.rotation * s.normal, gate_m, min_cos);
+  if (!cell) return;
+  const Eigen::Vector3d offset = point - cell->mean;
+  const double r = cell->normal.dot(offset);
+  // The plane is less known away from its mean.
+  const double variance = s.variance_m2 + cell->variance_m2 +
+                          cell->tilt_variance * (offset.squaredNorm() - r * r) +
+                          config.sigma_floor_m * config.sigma_floor_m;
+  const double width2 = config.robust_width * config.robust_width * variance;
+  const double weight = 1.0 / (variance * (1.0 + r * r / width2));
+  const Eigen::Vector3d m = T.rotation.conjugate() * cell->normal;
+  Vector6d J;
+  J << m, s.mean.cross(m);
+  const Upper JJ = weight * J * J.transpose();
+  const double a = 1.0 - share, b = share;
+  sums.diagonal[knot] += a * a * JJ;
+  sums.off_diagonal[knot] += a * b * JJ;
+  sums.diagonal[knot + 1] += b * b * JJ;
+  sums.gradient[knot] += (a * weight * r) * J;
+  sums.gradient[knot + 1] += (b * weight * r) * J;
+  sums.rigid += JJ;
+  // An inlier: within three standard deviations of sensor and surface.
+  if (r * r < width2) {
+    sums.squares_m2 += r * r;
+    ++sums.matches;
+  }
+}
+
+Sums sumPatches(const std::vector<Surfel>& surfels, const ScanMotion& motion, const SurfelMap& map,
+                const RegistrationConfig& config, double gate_m, int threads) {
+  const size_t knots = motion.T_odom_body.size();
+  const size_t blocks = (surfels.size() + kBlock - 1) / kBlock;
+  const Pieces pieces(motion);
+  const double min_cos = std::cos(config.max_normal_angle_rad);
+  std::vector<Sums> partial(blocks, Sums(knots));
+  const auto work = [&](size_t block) {
+    const size_t end = std::min(surfels.size(), (block + 1) * kBlock);
+    for (size_t i = block * kBlock; i < end; ++i)
+      addPatch(surfels[i], motion, pieces, map, config, gate_m, min_cos, partial[block]);
+  };
+  if (threads > 1)
+    tbb::parallel_for(size_t{0}, blocks, work);
+  else
+    for (size_t block = 0; block < blocks; ++block) work(block);
+  Sums total(knots);
+  for (const Sums& sums : partial) total.add(sums);
+  return total;
+}
+
+// A measurement Z of the piece between knots j and j+1: e = Log(Z^-1 X_j^-1 X_j+1), to first order
+// de = -Ad(X_j+1^-1 X_j) d_j + d_j+1 (the right Jacobian of a small e is the identity).
+struct PieceError {
+  Vector6d e;
+  Matrix6d A;  // by knot j; by knot j+1 it is the identity
+};
+
+PieceError pieceError(const SE3& Xi, const SE3& Xj, const SE3& Z) {
+  const SE3 between = Xi.inverse() * Xj;
+  return {se3Log(Z.inverse() * between), -se3Adjoint(between.inverse())};
+}
+
+void addPriors(const MotionPrior& prior, const SE3& begin, const ScanMotion& motion, Eigen::MatrixXd& H,
+               Eigen::VectorXd& g) {
+  const std::vector<SE3>& X = motion.T_odom_body;
+  const auto block = [&](size_t i, size_t j) {
+    return H.block<6, 6>(static_cast<Eigen::Index>(6 * i), static_cast<Eigen::Index>(6 * j));
+  };
+  const auto segment = [&](size_t i) { return g.segment<6>(static_cast<Eigen::Index>(6 * i)); };
+  block(0, 0) += prior.begin_information;
+  segment(0) += prior.begin_information * se3Log(begin.inverse() * X[0]);
+  for (size_t j = 0; j + 1 < X.size(); ++j) {
+    SE3 Z;
+    Matrix6d W;
+    if (!prior.relative.empty()) {
+      Z = prior.relative[j];
+      W = prior.relative_information[j];
+    } else {
+      if (j == 0 && !prior.has_previous_twist) continue;
+      // The motion of the piece before, held fixed within an iteration.
+      Z = j == 0 ? se3Exp(motion.step().seconds() * prior.previous_twist) : X[j - 1].inverse() * X[j];
+      W = prior.acceleration_information;
+    }
+    const PieceError error = pieceError(X[j], X[j + 1], Z);
+    const Matrix6d WA = W * error.A;
+    block(j, j) += error.A.transpose() * WA;
+    block(j, j + 1) += error.A.transpose() * W;
+    block(j + 1, j) += WA;
+    block(j + 1, j + 1) += W;
+    segment(j) += WA.transpose() * error.e;
+    segment(j + 1) += W * error.e;
+  }
+}
+
+void fillNormalEquations(const Sums& sums, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
+  const size_t knots = sums.diagonal.size();
+  for (size_t j = 0; j < knots; ++j) {
+    const auto o = static_cast<Eigen::Index>(6 * j);
+    H.block<6, 6>(o, o) = sums.diagonal[j];
+    g.segment<6>(o) = sums.gradient[j];
+    if (j + 1 < knots) {
+      H.block<6, 6>(o, o + 6) = sums.off_diagonal[j];
+      H.block<6, 6>(o + 6, o) = sums.off_diagonal[j].transpose();
+    }
+  }
+}
+
+}  // namespace
+
+ScanMotion::Place ScanMotion::placeOf(int32_t time_us) const {
+  const auto pieces = static_cast<double>(T_odom_body.size() - 1);
+  const double span = std::max<double>(1.0, static_cast<double>((end - begin).us));
+  const double s = std::clamp((span + time_us) / span, 0.0, 1.0) * pieces;
+  const auto knot = std::min(static_cast<size_t>(s), T_odom_body.size() - 2);
+  return {knot, s - static_cast<double>(knot)};
+}
+
+SE3 ScanMotion::at(int32_t time_us) const {
+  const auto [knot, share] = placeOf(time_us);
+  return interpolate(T_odom_body[knot], T_odom_body[knot + 1], share);
+}
+
+Duration ScanMotion::step() const {
+  return {(end - begin).us / static_cast<int64_t>(T_odom_body.size() - 1)};
+}
+
+RegistrationResult registerScan(const std::vector<Surfel>& surfels, const SurfelMap& map,
+                                const MotionPrior& prior, const RegistrationConfig& config, int threads,
+                                ScanMotion& motion) {
+  RegistrationResult result;
+  const size_t knots = motion.T_odom_body.size();
+  const auto size = static_cast<Eigen::Index>(6 * knots);
+  const SE3 begin = motion.T_odom_body.front();
+  Eigen::MatrixXd H(size, size);
+  for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
+    // Far matches help only while the guess is far off.
+    const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
+    const Sums sums = sumPatches(surfels, motion, map, config, gate_m, threads);
+    H.setZero();
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
+    fillNormalEquations(sums, H, g);
+    addPriors(prior, begin, motion, H, g);
+    // Holds directions that neither LiDAR nor prior knows (standing in the void).
+    H.diagonal().array() += 1e-6;
+    const Eigen::VectorXd step = -H.ldlt().solve(g);
+    for (size_t j = 0; j < knots; ++j)
+      motion.T_odom_body[j] =
+          motion.T_odom_body[j] * se3Exp(step.segment<6>(static_cast<Eigen::Index>(6 * j)));
+    result.lidar_information = sums.rigid;
+    result.matches = sums.matches;
+    result.residual_rms_m = sums.matches > 0 ? std::sqrt(sums.squares_m2 / sums.matches) : 0.0;
+    const Vector6d last = step.tail<6>();
+    result.converged = last.head<3>().norm() < 1e-4 && last.tail<3>().norm() < 2e-5;
+  }
+  result.inlier_share =
+      surfels.empty() ? 0.0 : static_cast<double>(result.matches) / static_cast<double>(surfels.size());
+  const Eigen::MatrixXd covariance = H.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  result.covariance =
+      0.5 * (covariance.bottomRightCorner<6, 6>() + covariance.bottomRightCorner<6, 6>().transpose());
+  return result;
+}
+
+RegistrationResult registerRigid(const std::vector<Surfel>& surfels, const SurfelMap& map,
+                                 const Matrix6d& prior_information, const RegistrationConfig& config,
+                                 int threads, SE3& T_target_source) {
+  RegistrationResult result;
+  const SE3 guess = T_target_source;
+  Matrix6d H = Matrix6d::Identity();
+  for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
+    const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
+    ScanMotion still{Time{0}, Time{1}, {T_target_source, T_target_source}};
+    const Sums sums = sumPatches(surfels, still, map, config, gate_m, threads);
+    H = sums.rigid + prior_information;
+    // Both knots hold the same pose, and their gradients add up to that of one rigid pose.
+    const Vector6d g =
+        sums.gradient[0] + sums.gradient[1] + prior_information * se3Log(guess.inverse() * T_target_source);
+    const Vector6d step = -H.ldlt().solve(g);
+    T_target_source = T_target_source * se3Exp(step);
+    result.lidar_information = sums.rigid;
+    result.matches = sums.matches;
+    result.residual_rms_m = sums.matches > 0 ? std::sqrt(sums.squares_m2 / sums.matches) : 0.0;
+    result.converged = step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 2e-5;
+  }
+  result.inlier_share =
+      surfels.empty() ? 0.0 : static_cast<double>(result.matches) / static_cast<double>(surfels.size());
+  result.covariance = H.ldlt().solve(Matrix6d::Identity());
+  return result;
+}
+
+}  // namespace sgraphs
