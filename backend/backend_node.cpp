@@ -132,14 +132,11 @@ bool BackendNode::workOff(const OdometryEstimate& estimate) {
       const int64_t last = estimate.keyframe.value + (estimate.is_keyframe ? 0 : 1);
       next_keyframe_ = held < 0 ? last : std::min(held, last);
       if (next_keyframe_ == last) continue;
-    } else {
-      motion_.add(estimate);
     }
     // The chunks were sent before ODOMETRY of the same scan. One more scan of patience lets datagrams that
     // overtook each other arrive.
     if (!keyframeRound(own ? &estimate : nullptr, !own || pending_.size() > 1 || input_ended_)) return false;
   }
-  motion_.add(estimate);
   if (rounds_ > 0 && estimate.time - last_round_ >= kIdleAfter) runRound({rounds_, estimate.time, {}}, {});
   publish(bus_, channels::kPose,
           toPoseMessage(estimate.time, newest_round_.T_map_odom * estimate.T_odom_body, estimate.twist_body));
@@ -178,9 +175,6 @@ bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) 
   std::optional<Keyframe> keyframe = joinedKeyframe(estimate);
   ++next_keyframe_;
   if (!keyframe) return true;
-  if (tieToGraph(*keyframe, core_.graph(), motion_) && ++repaired_ == 1)
-    spdlog::warn("keyframe {} is tied to the graph by odometry alone", keyframe->id.str());
-  motion_.reset(keyframe->scan);
   const Time time = keyframe->time;
   runRound({rounds_, time, std::move(keyframe)}, joined);
   return true;

@@ -83,7 +83,6 @@ class BackendNode {
   InputGate gate_;
   RoundJoiner joiner_;
   KeyframeAssembly assembly_;
-  MotionSinceKeyframe motion_;
 
   std::optional<Session> session_;
   std::vector<std::function<void()>> early_;  // what came before SESSION, in order of arrival
@@ -97,8 +96,7 @@ class BackendNode {
   Time last_round_;
   RoundOutput newest_round_;
   std::vector<OdometryEstimate> scans_;
-  int64_t repaired_ = 0;  // keyframes that a loss left without their measurements
-  int64_t missing_ = 0;   // outputs that a round went without
+  int64_t missing_ = 0;  // outputs that a round went without
   bool input_ended_ = false;
   bool stream_ended_ = false;
   std::optional<run_result_t> result_;

@@ -1,6 +1,5 @@
 #include "backend/keyframe_assembly.h"
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -30,29 +29,6 @@ int64_t KeyframeAssembly::firstFrom(int64_t keyframe) const {
   return found == open_.end() ? -1 : found->first;
 }
 
-void MotionSinceKeyframe::reset(int64_t scan) {
-  begin_scan_ = newest_scan_ = scan;
-  added_ = 0;
-  covariance_.setZero();
-}
-
-void MotionSinceKeyframe::add(const OdometryEstimate& estimate) {
-  if (estimate.scan <= newest_scan_) return;
-  const SE3 T_previous_body = T_odom_body_.inverse() * estimate.T_odom_body;
-  covariance_ = added_ == 0 ? estimate.covariance
-                            : composeCovariance(covariance_, T_previous_body, estimate.covariance);
-  newest_covariance_ = estimate.covariance;
-  T_odom_body_ = estimate.T_odom_body;
-  newest_scan_ = estimate.scan;
-  ++added_;
-}
-
-Matrix6d MotionSinceKeyframe::covarianceAt(int64_t scan) const {
-  const int64_t missing = std::max<int64_t>(0, scan - begin_scan_ - added_);
-  return covariance_ +
-         static_cast<double>(added_ == 0 ? std::max<int64_t>(1, missing) : missing) * newest_covariance_;
-}
-
 Keyframe keyframeWithoutCloud(const OdometryEstimate& estimate, const SE3& T_body_lidar) {
   Keyframe keyframe;
   keyframe.id = estimate.keyframe;
@@ -62,19 +38,6 @@ Keyframe keyframeWithoutCloud(const OdometryEstimate& estimate, const SE3& T_bod
   keyframe.T_keyframe_body = {SE3()};
   keyframe.T_body_lidar = T_body_lidar;
   return keyframe;
-}
-
-bool tieToGraph(Keyframe& keyframe, const SituationalGraph& graph, const MotionSinceKeyframe& motion) {
-  const auto known = [&](KeyframeId id) { return id == keyframe.id || graph.keyframes.contains(id); };
-  const size_t dropped = std::erase_if(keyframe.relative_poses, [&](const RelativePose& r) {
-    return r.from == r.to || !known(r.from) || !known(r.to);
-  });
-  if (!keyframe.relative_poses.empty() || graph.keyframes.empty()) return dropped > 0;
-  const auto& [newest, node] = *graph.keyframes.rbegin();
-  keyframe.relative_poses.push_back({RelativePoseKind::kOdometry, newest, keyframe.id,
-                                     node.T_odom_body.inverse() * keyframe.T_odom_body,
-                                     motion.covarianceAt(keyframe.scan)});
-  return true;
 }
 
 }  // namespace sgraphs

@@ -2,9 +2,7 @@
 
 #include <map>
 #include <optional>
-#include <string>
 
-#include "backend/graph/situational_graph.h"
 #include "common/types/keyframe.h"
 #include "lcmtypes/convert/convert.h"
 
@@ -30,29 +28,8 @@ class KeyframeAssembly {
   std::map<int64_t, std::map<int32_t, keyframe_t>> open_;  // keyframe -> chunk
 };
 
-// Motion of the body since the newest keyframe, by the odometry of each scan.
-class MotionSinceKeyframe {
- public:
-  void reset(int64_t scan);
-  // Scans in order; one that was added before changes nothing.
-  void add(const OdometryEstimate& estimate);
-  // Covariance of the motion up to this scan; scans whose odometry is missing count like the newest known.
-  Matrix6d covarianceAt(int64_t scan) const;
-
- private:
-  int64_t begin_scan_ = -1;
-  int64_t newest_scan_ = -1;
-  int64_t added_ = 0;
-  SE3 T_odom_body_;
-  Matrix6d covariance_ = Matrix6d::Zero();
-  Matrix6d newest_covariance_ = Matrix6d::Identity();
-};
-
-// Stands in for a keyframe whose message was lost: its pose by odometry, without a cloud.
+// Stands in for a keyframe whose message was lost: its pose by odometry, without cloud or measurements (the
+// backend ties it to the graph by the odometry poses).
 Keyframe keyframeWithoutCloud(const OdometryEstimate& estimate, const SE3& T_body_lidar);
-
-// After a loss: measurements against keyframes that the graph does not hold are dropped, and a keyframe left
-// without any is tied to the newest one by odometry. Returns whether anything had to be changed.
-bool tieToGraph(Keyframe& keyframe, const SituationalGraph& graph, const MotionSinceKeyframe& motion);
 
 }  // namespace sgraphs
