@@ -8,9 +8,6 @@
 #include "common/base/error.h"
 
 namespace sgraphs {
-namespace {
-
-// "1700000000.123456789" to microseconds, rounded to nearest; false if it is no plain decimal number.
 bool parseSeconds(const std::string& text, Time& time) {
   const size_t dot = text.find('.');
   const std::string whole = text.substr(0, dot);
@@ -29,8 +26,6 @@ bool parseSeconds(const std::string& text, Time& time) {
   time.us = std::stoll(whole) * 1000000 + (std::stoll(fraction) + 5) / 10;
   return true;
 }
-
-}  // namespace
 
 std::vector<StampedPose> readTum(const std::string& path) {
   std::ifstream in(path);
