@@ -14,7 +14,9 @@ constexpr double kBin_m = 0.02;
 constexpr double kMaxDepth_m = 2.5;  // below the path; deeper is another storey
 constexpr int kWindow = 2;           // bins to each side of a peak
 constexpr int64_t kMinPoints = 50;
-constexpr double kMinShare = 0.15;  // of the points below the path; walls alone spread evenly over all bins
+// Of the points below the path. Walls alone spread evenly: between a body's clearance and its feet the window
+// then holds about a quarter.
+constexpr double kMinShare = 0.4;
 constexpr double kFallbackBody_m = 0.5;  // height of a legged robot's body
 
 using Cell = std::pair<int, int>;
