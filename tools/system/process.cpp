@@ -76,6 +76,8 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   app.add_option("--end-after-silence", setup.end_after_silence_s,
                  "End the stream after so many seconds without a message; 0: never")
       ->check(CLI::NonNegativeNumber);
+  bool print_config = false;
+  app.add_flag("--print-config", print_config, "Print the configuration in force and exit");
   if (text.writes_output) app.add_option("-o,--output", setup.output_dir, "Folder to write the result to");
   try {
     app.parse(argc, argv);
@@ -90,6 +92,10 @@ int runProcess(const ProcessText& text, int argc, char** argv,
     for (const std::string& assignment : assignments) setConfigValue(visitOf(setup.config), assignment);
     if (threads > 0) setup.config.odometry.threads = threads;
     if (!setup.odometry.empty()) parseOdometryMode(setup.odometry);
+    if (print_config) {
+      std::fputs(configToYaml(visitOf(setup.config)).c_str(), stdout);
+      return kExitDone;
+    }
     return body(setup);
   } catch (const UsageError& e) {
     return failed(text.name, e, kExitUsage);
@@ -103,6 +109,7 @@ void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
   Stopwatch status, silence, overdue;
   bool heard = false;
   hooks.publish_status();
+  spdlog::info("listening");
   while (!hooks.done() || setup.stay) {
     if (signals.stopRequested()) {
       hooks.finish("stopped by a signal");
