@@ -75,6 +75,17 @@ TEST(MemoryBusTest, TypedMessagesTravelAsBytesAndForeignOnesAreTold) {
   EXPECT_EQ(undecodable, 2);
 }
 
+TEST(BusTest, AnImpossibleCountIsUndecodable) {
+  session_t message{}, decoded{};
+  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  ASSERT_TRUE(decode(bytes, decoded));
+  // num_stages stands behind fingerprint, header (4 * 8), schema (4) and the empty writer (4 + 1).
+  const size_t num_stages = 8 + 32 + 4 + 5;
+  for (size_t i = 0; i < 4; ++i) bytes[num_stages + i] = 0xFF;
+  EXPECT_FALSE(decode(bytes, decoded));
+}
+
 TEST(BusTest, BytesBehindAMessageMakeItUndecodable) {
   run_result_t message{}, decoded{};
   std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
