@@ -74,9 +74,7 @@ void run(Arguments& arguments) {
   if (!options.raw.empty() && arguments.start_utime <= 0)
     throw UsageError("--raw needs --start-utime: the time of its first firing [us since the Unix epoch]");
   options.raw_start = Time{arguments.start_utime};
-  if (arguments.T_body_lidar.empty())
-    spdlog::warn("no --T-body-lidar: the LiDAR counts as mounted at the body's origin, x forward, z up");
-  else
+  if (!arguments.T_body_lidar.empty())
     options.T_body_lidar = parseTransform(arguments.T_body_lidar, "--T-body-lidar");
   if (!options.odometry_mode.empty()) parseOdometryMode(options.odometry_mode);
   ConvertReport report;
@@ -84,6 +82,9 @@ void run(Arguments& arguments) {
     ProgressLine line;
     report = convertRecording(options, [&](double share) { line.update(share); });
   }
+  if (arguments.T_body_lidar.empty())
+    report.warnings.push_back(
+        "no --T-body-lidar: the LiDAR counts as mounted at the body's origin, x forward, z up");
   for (const std::string& warning : report.warnings) spdlog::warn(warning);
   printReport(report, options);
 }
