@@ -41,8 +41,4 @@ std::vector<Slab> defaultSlabs(const Scene& scene);
 // Every surface of the building, as closed boxes.
 TriangleMesh buildMesh(const Scene& scene);
 
-// Why the scene cannot be: what is wrong with which item, or nothing. Checks sizes, that doorways stand on
-// walls, that waypoints and the walk keep their clearance from walls and furniture.
-std::optional<std::string> findFault(const Scene& scene);
-
 }  // namespace sgraphs::simulate

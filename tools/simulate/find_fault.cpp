@@ -1,5 +1,9 @@
+#include "tools/simulate/find_fault.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "tools/simulate/building.h"
 
@@ -147,10 +151,12 @@ std::optional<std::string> passageFault(const Scene& scene, const std::vector<Ob
   }
   // Arcs leave the legs.
   const Trajectory walk = walkAlong(scene.path, Time{}, 0);
-  const double step_s = kSample_m / scene.path.speed_mps;
-  for (double t = 0; t < walk.duration().seconds(); t += step_s)
-    if (auto fault = blocked(walk.poseAtOffset(t).translation.head<2>(), "the walk, which rounds corners,"))
-      return fault;
+  const double seconds = walk.duration().seconds();
+  const int samples = static_cast<int>(std::ceil(seconds * scene.path.speed_mps / kSample_m));
+  for (int k = 0; k <= samples; ++k) {
+    const SE3 T = walk.poseAtOffset(seconds * k / std::max(1, samples));
+    if (auto fault = blocked(T.translation.head<2>(), "the walk, which rounds corners,")) return fault;
+  }
   return std::nullopt;
 }
 

@@ -14,7 +14,7 @@ struct LegsOdometryModel {
   double rate_hz = 50;
   double scale = 0.015;                     // error per distance walked
   double turn_scale = 0.01;                 // error per angle turned
-  double yaw_bias_rad_per_m = 0.0015;       // constant
+  double yaw_bias_rad_per_m = 0.003;        // constant
   double yaw_walk_rad_per_sqrt_m = 0.003;   // random walk
   double slip_m_per_rad = 0.02;             // at turns, standard deviation per radian
   double height_bias_m_per_m = 0.001;       // constant

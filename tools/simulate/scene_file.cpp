@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "common/base/error.h"
-#include "tools/simulate/building.h"
+#include "tools/simulate/find_fault.h"
 #include "tools/simulate/plan_reader.h"
 
 namespace sgraphs::simulate {
@@ -144,8 +144,9 @@ void readPath(const PlanReader& in, Scene& scene) {
 json parseJson(const std::string& text, const std::string& where) {
   try {
     return json::parse(text);
-  } catch (const json::parse_error& error) {
-    // The library's text holds "parse error at line 3, column 5: …" behind its own tag.
+  } catch (const json::exception& error) {
+    // The library's text holds "parse error at line 3, column 5: …" behind its own tag; a number out of
+    // range comes without a line.
     std::string what = error.what();
     if (const size_t at = what.find("line "); at != std::string::npos) what = what.substr(at);
     std::replace(what.begin(), what.end(), '\n', ' ');

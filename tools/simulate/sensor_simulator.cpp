@@ -85,7 +85,7 @@ SensorPacket SensorSimulator::packet(int64_t index) const {
   out.time = trajectory_.start() + Duration{std::llround(static_cast<double>(index) * kPacketPeriod_us)};
   uint8_t* at = out.bytes.data();
   for (int block = 0; block < kBlocks; ++block) {
-    const int64_t first = index * kSequencesPerPacket + block * kSequencesPerBlock;
+    const int64_t first = index * kSequencesPerPacket + int64_t{block} * kSequencesPerBlock;
     const auto azimuth = std::llround(azimuthDeg(static_cast<double>(first) * kSequencePeriod_us) * 100.0);
     put16(at, 0xEEFF);
     put16(at + 2, static_cast<uint32_t>(((azimuth % 36000) + 36000) % 36000));

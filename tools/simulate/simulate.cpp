@@ -19,16 +19,15 @@ namespace {
 constexpr int64_t kPacketsPerBatch = 754;  // about a second
 constexpr int64_t kTruthPeriod_us = 10000;
 
-// Odd, positive, and the same for the same scene file and seed.
-int64_t sessionId(const std::string& digest, uint64_t seed) {
-  const auto value = static_cast<int64_t>(std::stoull(digest.substr(0, 15), nullptr, 16) ^ (seed << 1));
-  return (value & 0x7fffffffffffffffLL) | 1;
-}
-
 Session describe(const SimulateOptions& options, const Scene& scene, const std::string& plan_path) {
+  Sha256 digest;
+  digest.add(sha256OfFile(plan_path));
+  digest.add(static_cast<int64_t>(options.seed));
+  digest.add(static_cast<int64_t>(options.with_odometry));
   Session session;
-  session.config_digest = sha256OfFile(plan_path);
-  session.id = sessionId(session.config_digest, options.seed);
+  session.config_digest = digest.hex();
+  // 60 bits of the digest, and never 0: the same recording has the same session whenever it is made.
+  session.id = std::stoll(session.config_digest.substr(0, 15), nullptr, 16) | 1;
   session.start = scene.start;
   session.writer = "sgraphs simulate " SGRAPHS_VERSION;
   session.has_odometry = options.with_odometry;
@@ -96,11 +95,11 @@ SimulateResult simulate(const SimulateOptions& options, const Progress& progress
   std::vector<BodyOdometry> odometry;
   if (options.with_odometry) odometry = simulateLegsOdometry(trajectory, {}, options.seed);
 
+  if (!options.truth_dir.empty()) writeTruth(options.truth_dir, scene, mesh, trajectory);
   LogWriter log(options.output);
   RecordingWriter writer(log, describe(options, scene, plan_path));
   writeRecording(writer, sensor, odometry, options, progress);
   log.close();
-  if (!options.truth_dir.empty()) writeTruth(options.truth_dir, scene, mesh, trajectory);
 
   return {trajectory.duration().seconds(), lengthOf(sampleTruth(trajectory)), sensor.numPackets(),
           static_cast<int64_t>(odometry.size())};

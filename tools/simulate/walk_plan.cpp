@@ -10,8 +10,8 @@ namespace sgraphs::simulate {
 namespace {
 
 constexpr double kStep_m = 0.01;             // grid of the speed profile
-constexpr double kSharpest_rad = 2.3;        // sharper corners are turned on the spot
-constexpr double kSmallestRadius_m = 0.2;    // narrower arcs too
+constexpr double kFarthestMiss_m = 0.25;     // of a waypoint, by the arc that rounds it
+constexpr double kSmallestRadius_m = 0.2;    // narrower arcs are turned on the spot
 constexpr double kFullActivity_mps = 0.3;    // speed of full gait
 constexpr double kFullActivity_rad_s = 0.3;  // yaw rate of full gait
 
@@ -169,16 +169,15 @@ double WalkPlan::cornerRadius(size_t waypoint) const {
   const Eigen::Vector2d in = points[waypoint].xy - points[waypoint - 1].xy;
   const Eigen::Vector2d out = points[waypoint + 1].xy - points[waypoint].xy;
   const double half = 0.5 * std::abs(wrap(headingOf(out) - headingOf(in)));
-  const double longest = 0.5 * std::min(in.norm(), out.norm());
-  return half < 1e-9 ? path_.turn_radius_m : std::min(path_.turn_radius_m, longest / std::tan(half));
+  if (half < 1e-9) return path_.turn_radius_m;
+  // Each leg gives half of its length to the arc; the arc passes the corner at radius * (1 / cos(half) - 1).
+  const double by_length = 0.5 * std::min(in.norm(), out.norm()) / std::tan(half);
+  const double by_miss = kFarthestMiss_m * std::cos(half) / (1.0 - std::cos(half));
+  return std::min({path_.turn_radius_m, by_length, by_miss});
 }
 
 bool WalkPlan::stopsAt(size_t waypoint) const {
-  const auto& points = path_.waypoints;
-  if (points[waypoint].pause_s > 0) return true;
-  const double angle = wrap(headingOf(points[waypoint + 1].xy - points[waypoint].xy) -
-                            headingOf(points[waypoint].xy - points[waypoint - 1].xy));
-  return std::abs(angle) > kSharpest_rad || cornerRadius(waypoint) < kSmallestRadius_m;
+  return path_.waypoints[waypoint].pause_s > 0 || cornerRadius(waypoint) < kSmallestRadius_m;
 }
 
 void WalkPlan::run(size_t first, size_t last) {
