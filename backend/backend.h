@@ -24,6 +24,9 @@ struct RoundOutput {
   SE3 T_map_odom;
   Matrix6d keyframe_covariance = Matrix6d::Identity();  // newest keyframe in map, conservative
   std::string graph_digest;
+  bool bridged = false;              // the keyframe came without a usable measurement against the graph
+  bool whole_graph = false;          // every state was free in this round, not only the neighbourhood
+  std::vector<std::string> refused;  // one line for each thing of the input that was refused: what and why
 };
 
 // How well one kind of factor fits.
@@ -39,9 +42,13 @@ class Backend {
   explicit Backend(const BackendConfig& config);
   ~Backend();
 
+  // A round with a keyframe costs what it changed. An idle round brings the graph to the optimum of the whole
+  // (within its iterations; the next one goes on), so a run ends with idle rounds until nothing changes.
   RoundOutput step(RoundInput input);
   const SituationalGraph& graph() const;
-  // By kind: odometry, neighbour, loop, up.
+  // By kind: odometry, neighbour, loop, up. dof counts residuals; those of the whole graph are their sum less
+  // 6 per keyframe but the first and, where there is an up factor, 2. chi2 is at the present states, without
+  // robust loss.
   std::map<std::string, FactorStatistics> factorStatistics() const;
 
  private:

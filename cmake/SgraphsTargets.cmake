@@ -45,9 +45,10 @@ function(sgraphs_executable name)
   endif()
 endfunction()
 
-# sgraphs_test(NAME SOURCES x_test.cpp … DEPS libraries): one GoogleTest program, its cases known to CTest.
+# sgraphs_test(NAME SOURCES x_test.cpp … DEPS libraries [SERIAL]): one GoogleTest program, its cases known to
+# CTest; SERIAL cases run while no other test does.
 function(sgraphs_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT SGRAPHS_BUILD_TESTS)
     return()
   endif()
@@ -61,5 +62,6 @@ function(sgraphs_test name)
     SGRAPHS_BINARY_DIR="${PROJECT_BINARY_DIR}/bin")
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS "${ARG_LABELS}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS "${ARG_LABELS}"
+                       RUN_SERIAL ${ARG_SERIAL})
 endfunction()

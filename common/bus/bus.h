@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <new>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -44,7 +46,15 @@ void publish(Bus& bus, const Channel<Message>& channel, const Message& message) 
 // Decodes one message; false if the bytes are not a message of this type, or hold more than one.
 template <typename Message>
 bool decode(Bus::Bytes bytes, Message& message) {
-  return message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) == static_cast<int>(bytes.size());
+  try {
+    return message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) == static_cast<int>(bytes.size());
+  } catch (const std::length_error&) {
+    // LCM's generated code sizes its vectors by counts that it has not checked: negative ones,
+    return false;
+  } catch (const std::bad_alloc&) {
+    // or ones beyond any memory.
+    return false;
+  }
 }
 
 // Handler for decoded messages; bytes that do not decode go to on_undecodable (counted and named by the

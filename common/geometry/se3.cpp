@@ -50,7 +50,9 @@ Eigen::Vector3d so3Log(const Eigen::Quaterniond& q_in) {
 Eigen::Matrix3d so3RightJacobian(const Eigen::Vector3d& w) {
   const double th2 = w.squaredNorm(), th = std::sqrt(th2);
   const Eigen::Matrix3d W = skew(w);
-  const double a = th < kSmallAngle ? 0.5 - th2 / 24.0 : (1.0 - std::cos(th)) / th2;
+  // 1 - cos cancels for small angles, the half angle's sine does not.
+  const double sin_half = std::sin(0.5 * th);
+  const double a = th < kSmallAngle ? 0.5 - th2 / 24.0 : 2.0 * sin_half * sin_half / th2;
   const double b = th < kSmallAngle ? 1.0 / 6.0 - th2 / 120.0 : (th - std::sin(th)) / (th2 * th);
   return Eigen::Matrix3d::Identity() - a * W + b * W * W;
 }

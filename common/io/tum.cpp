@@ -8,14 +8,15 @@
 #include "common/base/error.h"
 
 namespace sgraphs {
-namespace {
-
-// "1700000000.123456789" to microseconds, rounded to nearest; false if it is no plain decimal number.
 bool parseSeconds(const std::string& text, Time& time) {
   const size_t dot = text.find('.');
   const std::string whole = text.substr(0, dot);
-  if (whole.empty() || whole.size() > 12 || whole.find_first_not_of("0123456789") != std::string::npos) {
-    // Scientific notation and signs are rare: they go the ordinary way.
+  std::string fraction = dot == std::string::npos ? "" : text.substr(dot + 1);
+  const auto digits = [](const std::string& s) {
+    return s.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (whole.empty() || whole.size() > 12 || !digits(whole) || !digits(fraction)) {
+    // Scientific notation (KITTI) and signs go the ordinary way.
     char* end = nullptr;
     const double seconds = std::strtod(text.c_str(), &end);
     if (end == text.c_str() || *end != '\0' || !std::isfinite(seconds) || std::abs(seconds) > 9e12)
@@ -23,14 +24,10 @@ bool parseSeconds(const std::string& text, Time& time) {
     time.us = std::llround(seconds * 1e6);
     return true;
   }
-  std::string fraction = dot == std::string::npos ? "" : text.substr(dot + 1);
-  if (fraction.find_first_not_of("0123456789") != std::string::npos) return false;
   fraction.resize(7, '0');
   time.us = std::stoll(whole) * 1000000 + (std::stoll(fraction) + 5) / 10;
   return true;
 }
-
-}  // namespace
 
 std::vector<StampedPose> readTum(const std::string& path) {
   std::ifstream in(path);

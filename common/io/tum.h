@@ -14,6 +14,9 @@ struct StampedPose {
   SE3 pose;
 };
 
+// "1700000000.123456789" to microseconds, rounded to nearest, digit by digit; false if it is no plain number.
+bool parseSeconds(const std::string& text, Time& time);
+
 // TUM trajectory: `t x y z qx qy qz qw` per line, t in seconds, '#' comments. Stamps are parsed digit by
 // digit, so that no microsecond is lost in a double. Throws Error naming file and line for a bad row or time
 // running backwards.

@@ -13,6 +13,7 @@ namespace {
 // 20 packets are 25 kB and 26 ms: one datagram, and four messages per revolution at 600 rpm.
 constexpr size_t kMaxPacketsPerMessage = 20;
 constexpr Duration kSessionInterval{1'000'000};
+constexpr Duration kMaxFilledGap{10'000'000};
 
 Time lastFiring(const VelodynePacket& packet) {
   Vlp16Packet parsed;
@@ -30,6 +31,8 @@ RecordingWriter::RecordingWriter(LogWriter& log, const Session& session)
 }
 
 void RecordingWriter::tick(Time now) {
+  // A gap in the recording is not filled with repetitions.
+  if (now - next_session_ > kMaxFilledGap) next_session_ = now;
   while (next_session_ <= now) {
     session_t message = toMessage(session_, next_session_);
     message.header = header(channels::kSession.name, next_session_);

@@ -1,0 +1,265 @@
+#include "backend/backend_node.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "backend/graph_messages.h"
+#include "common/bus/status.h"
+#include "lcmtypes/convert/convert.h"
+
+namespace sgraphs {
+namespace {
+
+// Messages that may wait for SESSION.
+constexpr size_t kMaxEarly = 2000;
+
+// What a round waits for, and by which id. Planes, free space, rooms and loops join as further rows; a row
+// counts if SESSION lists its stage.
+struct JoinedInput {
+  const char* channel;
+  const char* stage;
+};
+constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry"}};
+
+}  // namespace
+
+BackendNode::BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode)
+    : bus_(bus), publisher_(bus), core_(std::move(core)), mode_(mode), joiner_(mode) {
+  listen(channels::kSession, &BackendNode::onSession);
+  listen(channels::kOdometry, &BackendNode::onOdometry);
+  listen(channels::kKeyframe, &BackendNode::onKeyframe);
+  listen(channels::kOdometryEnd, &BackendNode::onOdometryEnd);
+  listen(channels::kStreamEnd, &BackendNode::onStreamEnd);
+  if (mode_ == RoundJoiner::Mode::kWait) listen(channels::kRoundSchedule, &BackendNode::onSchedule);
+}
+
+// What comes before SESSION is held back: SESSION alone says which session this run belongs to, and it comes
+// from another process than ODOMETRY.
+template <typename Message>
+void BackendNode::listen(const Channel<Message>& channel, void (BackendNode::*handler)(const Message&)) {
+  const std::string name = channel.name;
+  const auto on_message = [this, name, handler](const Message& m) {
+    if (session_ || name == channels::kSession.name)
+      (this->*handler)(m);
+    else if (early_.size() < kMaxEarly)
+      early_.push_back([this, handler, m] { (this->*handler)(m); });
+    else
+      gate_.reject(name, "before SESSION");
+  };
+  subscribe(bus_, channel, on_message, [this, name] { gate_.reject(name, "undecodable"); });
+}
+
+void BackendNode::onSession(const session_t& m) {
+  const std::string channel = channels::kSession.name;
+  if (done()) return;
+  const std::optional<Session> session = fromMessage(m);
+  if (!session)
+    return gate_.reject(channel, "no session id, another schema, or content that cannot be right");
+  if (!gate_.accept(channel, m.header) || session_) return;
+  session_ = session;
+  publisher_.setSession(session->id);
+  for (const std::string& stage : session->stages)
+    if (stage != "odometry" && stage != "backend")
+      spdlog::warn("SESSION lists stage '{}', which this version does not have: rounds go on without it",
+                   stage);
+  for (const auto& handle : std::exchange(early_, {})) handle();
+}
+
+void BackendNode::onOdometry(const odometry_t& m) {
+  const std::string channel = channels::kOdometry.name;
+  int64_t lost_before = 0;
+  if (done() || !gate_.accept(channel, m.header, &lost_before)) return;
+  const std::optional<OdometryEstimate> estimate = fromMessage(m);
+  if (!estimate) return gate_.reject(channel, "content that cannot be right");
+  if (estimate->scan <= newest_scan_ || (newest_scan_ >= 0 && estimate->time <= newest_time_))
+    return gate_.reject(channel, "a scan from the past");
+  if (estimate->keyframe.value > announced_by_odometry_ + 1 + lost_before)
+    return gate_.reject(channel, "a keyframe that cannot be");
+  announced_by_odometry_ = std::max(announced_by_odometry_, estimate->keyframe.value);
+  newest_scan_ = estimate->scan;
+  newest_time_ = estimate->time;
+  pending_.push_back(*estimate);
+  advance();
+}
+
+void BackendNode::onKeyframe(const keyframe_t& m) {
+  const std::string channel = channels::kKeyframe.name;
+  int64_t lost_before = 0;
+  if (done() || !gate_.accept(channel, m.header, &lost_before)) return;
+  if (m.keyframe < next_keyframe_) return gate_.reject(channel, "its round is closed");
+  if (m.keyframe > announced_by_keyframe_ + 1 + lost_before)
+    return gate_.reject(channel, "a keyframe that cannot be");
+  announced_by_keyframe_ = std::max(announced_by_keyframe_, m.keyframe);
+  const KeyframeAssembly::Fate fate = assembly_.add(m);
+  if (fate == KeyframeAssembly::Fate::kRefused) return gate_.reject(channel, "counts that do not match");
+  if (fate == KeyframeAssembly::Fate::kComplete) joiner_.arrived({channel, m.keyframe, m.header.seq});
+  advance();
+}
+
+void BackendNode::onSchedule(const round_schedule_t& m) {
+  const std::string channel = channels::kRoundSchedule.name;
+  if (done() || !gate_.accept(channel, m.header)) return;
+  std::vector<RoundJoiner::Output> outputs;
+  for (size_t i = 0; i < m.channel.size(); ++i) outputs.push_back({m.channel[i], -1, m.seq[i]});
+  if (m.round >= rounds_) joiner_.schedule(m.round, outputs);
+}
+
+void BackendNode::onStreamEnd(const stream_end_t& m) {
+  if (done() || !gate_.accept(channels::kStreamEnd.name, m.header)) return;
+  closeChannel(gate_, m, channels::kSession.name);
+  stream_ended_ = true;
+}
+
+void BackendNode::onOdometryEnd(const stream_end_t& m) {
+  if (done() || !gate_.accept(channels::kOdometryEnd.name, m.header)) return;
+  closeChannel(gate_, m, channels::kOdometry.name);
+  closeChannel(gate_, m, channels::kKeyframe.name);
+  finish(m.why_not);
+}
+
+void BackendNode::advance() {
+  while (session_ && !pending_.empty() && workOff(pending_.front())) pending_.pop_front();
+}
+
+bool BackendNode::workOff(const OdometryEstimate& estimate) {
+  while (next_keyframe_ <= estimate.keyframe.value) {
+    const bool own = estimate.is_keyframe && estimate.keyframe.value == next_keyframe_;
+    if (!own) {
+      // Its ODOMETRY is lost, or an earlier one's: go to the next keyframe of which there is anything.
+      const int64_t held = assembly_.firstFrom(next_keyframe_);
+      const int64_t last = estimate.keyframe.value + (estimate.is_keyframe ? 0 : 1);
+      next_keyframe_ = held < 0 ? last : std::min(held, last);
+      if (next_keyframe_ == last) continue;
+    }
+    // The chunks were sent before ODOMETRY of the same scan. One more scan of patience lets datagrams that
+    // overtook each other arrive.
+    if (!keyframeRound(own ? &estimate : nullptr, !own || pending_.size() > 1 || input_ended_)) return false;
+  }
+  if (rounds_ > 0 && estimate.time - last_round_ >= kIdleAfter) runRound({rounds_, estimate.time, {}}, {});
+  publish(bus_, channels::kPose,
+          toPoseMessage(estimate.time, newest_round_.T_map_odom * estimate.T_odom_body, estimate.twist_body));
+  scans_.push_back(estimate);
+  return true;
+}
+
+// Keyframes whose own ODOMETRY is lost and that no later one announced.
+void BackendNode::workOffKeyframesLeft() {
+  for (int64_t held = 0; session_ && (held = assembly_.firstFrom(next_keyframe_)) >= 0;) {
+    next_keyframe_ = held;
+    keyframeRound(nullptr, true);
+  }
+}
+
+RoundJoiner::Wants BackendNode::wantsOf(int64_t keyframe) const {
+  RoundJoiner::Wants wants;
+  const auto takesPart = [this](const std::string& stage) {
+    const auto& stages = session_->stages;
+    return stages.empty() || stage == "odometry" ||
+           std::find(stages.begin(), stages.end(), stage) != stages.end();
+  };
+  for (const JoinedInput& input : kKeyedByKeyframe)
+    if (takesPart(input.stage)) wants[input.channel] = keyframe;
+  return wants;
+}
+
+bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) {
+  const RoundJoiner::Wants wants = wantsOf(next_keyframe_);
+  if (!joiner_.ready(rounds_, wants)) {
+    if (!overdue) return false;
+    joiner_.lost(channels::kKeyframe.name, next_keyframe_);
+  }
+  const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
+  missing_ += static_cast<int64_t>(joined.missing.size());
+  std::optional<Keyframe> keyframe = joinedKeyframe(estimate);
+  ++next_keyframe_;
+  if (!keyframe) return true;
+  const Time time = keyframe->time;
+  runRound({rounds_, time, std::move(keyframe)}, joined);
+  return true;
+}
+
+std::optional<Keyframe> BackendNode::joinedKeyframe(const OdometryEstimate* estimate) {
+  const bool came = assembly_.contains(next_keyframe_);
+  std::optional<Keyframe> keyframe = assembly_.take(next_keyframe_);
+  const SituationalGraph& graph = core_.graph();
+  const bool in_order =
+      keyframe && (graph.keyframes.empty() || graph.keyframes.rbegin()->second.time < keyframe->time);
+  if (came && !in_order) gate_.reject(channels::kKeyframe.name, "content that cannot be right");
+  if (in_order) return keyframe;
+  if (estimate) return keyframeWithoutCloud(*estimate, session_->T_body_lidar);
+  return std::nullopt;
+}
+
+void BackendNode::runRound(RoundInput input, const RoundJoiner::Joined& joined) {
+  const Time time = input.time;
+  if (mode_ == RoundJoiner::Mode::kLive) publishSchedule(input, joined);
+  const Stopwatch watch;
+  newest_round_ = core_.step(std::move(input));
+  latency_.add(watch.elapsedUs());
+  last_round_ = time;
+  const int64_t round = rounds_++;
+  for (graph_update_t& m : updateMessages(core_.graph(), newest_round_, round, time))
+    publisher_.send(channels::kGraphUpdate, m);
+  map_to_odom_t map_to_odom{};
+  map_to_odom.header.utime = time.us;
+  map_to_odom.T_map_odom = toMessage(newest_round_.T_map_odom);
+  publisher_.send(channels::kMapToOdom, map_to_odom);
+  if (rounds_ % kSnapshotEvery == 0) publishSnapshot();
+}
+
+void BackendNode::publishSchedule(const RoundInput& input, const RoundJoiner::Joined& joined) {
+  round_schedule_t m{};
+  m.header.utime = input.time.us;
+  m.round = input.round;
+  m.keyframe = input.keyframe ? input.keyframe->id.value : -1;
+  for (const RoundJoiner::Output& output : joined.outputs) {
+    m.channel.push_back(output.input);
+    m.seq.push_back(output.seq);
+  }
+  m.num_joined = static_cast<int32_t>(m.channel.size());
+  publisher_.send(channels::kRoundSchedule, m);
+}
+
+void BackendNode::publishSnapshot() {
+  for (graph_update_t& m : snapshotMessages(core_.graph(), newest_round_, rounds_ - 1, last_round_))
+    publisher_.send(channels::kGraphSnapshot, m);
+}
+
+void BackendNode::finish(const std::string& why_not) {
+  if (done()) return;
+  input_ended_ = true;
+  advance();
+  workOffKeyframesLeft();
+  const Time end = scans_.empty() ? last_round_ : scans_.back().time;
+  for (int i = 0; rounds_ > 0 && i < kMaxFinalRounds; ++i) {
+    runRound({rounds_, end, {}}, {});
+    if (newest_round_.changed.empty()) break;
+  }
+  if (rounds_ > 0) publishSnapshot();
+  run_result_t m{};
+  m.header.utime = end.us;
+  m.graph_digest = newest_round_.graph_digest;
+  m.rounds = rounds_;
+  const auto because = [&m](const std::string& reason) {
+    if (!reason.empty()) m.why_not += (m.why_not.empty() ? "" : "; ") + reason;
+  };
+  because(gate_.trouble());
+  if (missing_ > 0) because(std::to_string(missing_) + " KEYFRAME(s) incomplete when their round ran");
+  if (!session_) because("no SESSION arrived");
+  because(why_not);
+  m.reproducible = m.why_not.empty();
+  publisher_.send(channels::kRunResult, m);
+  result_ = std::move(m);
+}
+
+void BackendNode::publishStatus() {
+  const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
+  status_t status =
+      makeStatus("sgraphs-backend", state, gate_, publisher_, pending_.size() + assembly_.size(), latency_);
+  status.header.utime = newest_time_.us;
+  publisher_.send(channels::kStatusBackend, status);
+}
+
+}  // namespace sgraphs

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backend/backend.h"
+#include "backend/keyframe_assembly.h"
+#include "backend/round_joiner.h"
+#include "common/base/performance.h"
+#include "common/bus/bus.h"
+#include "common/bus/channels.h"
+#include "common/bus/input_gate.h"
+#include "common/bus/publisher.h"
+#include "common/types/session.h"
+
+namespace sgraphs {
+
+// The core that the node drives: a Backend, or what stands for it in a test.
+struct BackendCore {
+  std::function<RoundOutput(RoundInput)> step;
+  std::function<const SituationalGraph&()> graph;
+  std::function<std::map<std::string, FactorStatistics>()> factors;
+};
+
+// The backend on a bus. Scans are worked off in the order of ODOMETRY: a keyframe's scan first runs its
+// round, a scan 5 s after the newest round runs an idle one, then POSE of the scan is published. Rounds are
+// joined by id, so that processes may race; see architecture.md, "Rounds".
+class BackendNode {
+ public:
+  static constexpr Duration kIdleAfter{5'000'000};
+  static constexpr int kMaxFinalRounds = 5;
+  static constexpr int64_t kSnapshotEvery = 50;  // rounds
+
+  // The bus must outlive the node. In live mode ROUND_SCHEDULE is written, else it is read and obeyed.
+  BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode = RoundJoiner::Mode::kWait);
+
+  // Ends a run whose ODOMETRY_END does not come: works off what is held, runs the final rounds, publishes
+  // RUN_RESULT. `why_not`: why another run may differ; empty if it may not.
+  void finish(const std::string& why_not);
+  void publishStatus();
+
+  bool done() const { return result_.has_value(); }
+  // STREAM_END was heard: ODOMETRY_END should follow soon.
+  bool streamEnded() const { return stream_ended_; }
+  const run_result_t& result() const { return *result_; }  // done() only
+
+  const SituationalGraph& graph() const { return core_.graph(); }
+  std::map<std::string, FactorStatistics> factors() const { return core_.factors(); }
+  const std::optional<Session>& session() const { return session_; }
+  const std::vector<OdometryEstimate>& scans() const { return scans_; }  // worked off, in order of time
+  const InputGate& gate() const { return gate_; }
+  const LatencyHistogram& roundLatency() const { return latency_; }
+  int64_t rounds() const { return rounds_; }
+
+ private:
+  template <typename Message>
+  void listen(const Channel<Message>& channel, void (BackendNode::*handler)(const Message&));
+  void onSession(const session_t& m);
+  void onOdometry(const odometry_t& m);
+  void onKeyframe(const keyframe_t& m);
+  void onSchedule(const round_schedule_t& m);
+  void onOdometryEnd(const stream_end_t& m);
+  void onStreamEnd(const stream_end_t& m);
+
+  void advance();
+  bool workOff(const OdometryEstimate& estimate);
+  void workOffKeyframesLeft();
+  bool keyframeRound(const OdometryEstimate* estimate, bool overdue);
+  std::optional<Keyframe> joinedKeyframe(const OdometryEstimate* estimate);
+  RoundJoiner::Wants wantsOf(int64_t keyframe) const;
+  void runRound(RoundInput input, const RoundJoiner::Joined& joined);
+  void publishSchedule(const RoundInput& input, const RoundJoiner::Joined& joined);
+  void publishSnapshot();
+
+  Bus& bus_;
+  Publisher publisher_;
+  BackendCore core_;
+  RoundJoiner::Mode mode_;
+  InputGate gate_;
+  RoundJoiner joiner_;
+  KeyframeAssembly assembly_;
+
+  std::optional<Session> session_;
+  std::vector<std::function<void()>> early_;  // what came before SESSION, in order of arrival
+  std::deque<OdometryEstimate> pending_;      // accepted, not yet worked off
+  int64_t announced_by_odometry_ = -1;        // newest keyframe that ODOMETRY named
+  int64_t announced_by_keyframe_ = -1;        // newest keyframe that KEYFRAME named
+  int64_t newest_scan_ = -1;
+  Time newest_time_;
+  int64_t next_keyframe_ = 0;
+  int64_t rounds_ = 0;
+  Time last_round_;
+  RoundOutput newest_round_;
+  std::vector<OdometryEstimate> scans_;
+  int64_t missing_ = 0;  // outputs that a round went without
+  bool input_ended_ = false;
+  bool stream_ended_ = false;
+  std::optional<run_result_t> result_;
+  LatencyHistogram latency_;
+};
+
+}  // namespace sgraphs

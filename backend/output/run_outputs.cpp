@@ -1,0 +1,67 @@
+#include "backend/output/run_outputs.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "backend/output/dense_trajectory.h"
+#include "backend/output/floor_level.h"
+#include "backend/output/floor_plan.h"
+#include "backend/output/graph_files.h"
+#include "backend/output/map_cloud.h"
+#include "backend/output/occupancy_grid.h"
+#include "backend/output/summary_json.h"
+#include "common/io/ply.h"
+#include "common/io/text_file.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr double kMapVoxel_m = 0.05;
+constexpr double kOccupancyCell_m = 0.05;
+
+void writeMap(const std::vector<MapPoint>& map, const std::string& path) {
+  PointCloud cloud;
+  cloud.points.reserve(map.size());
+  cloud.floors.reserve(map.size());
+  for (const MapPoint& point : map) {
+    cloud.points.push_back(point.position_map);
+    cloud.floors.push_back(static_cast<uint8_t>(std::min<int64_t>(point.floor.value, 255)));
+  }
+  writePlyPoints(path, cloud);
+}
+
+void writeStorey(const RunRecord& record, const FloorNode& floor, const std::vector<MapPoint>& map,
+                 const std::string& out_dir) {
+  const std::string name = floor.id.str();
+  const FloorPlan plan = makeFloorPlan(*record.graph, floor, map, record.scans);
+  writeFile(out_dir + "/floorplan_" + name + ".svg", floorPlanSvg(plan));
+  writeFile(out_dir + "/floorplan_" + name + ".png", floorPlanPng(plan));
+  const OccupancyGrid grid = buildOccupancy(*record.graph, floor, kOccupancyCell_m);
+  if (grid.cells.empty()) return;  // nothing was seen in the band: map_server refuses an empty image
+  const std::string image = "occupancy_" + name + ".pgm";
+  writeFile(out_dir + "/" + image, occupancyPgm(grid));
+  writeFile(out_dir + "/occupancy_" + name + ".yaml", occupancyYaml(grid, image));
+}
+
+}  // namespace
+
+void writeOutputs(const RunRecord& record, const std::string& out_dir) {
+  if (!record.graph) throw std::logic_error("writeOutputs: the record has no graph");
+  const SituationalGraph& graph = *record.graph;
+  createFolder(out_dir);
+  writeTum(out_dir + "/trajectory.tum", denseTrajectory(graph, record.scans));
+  writeTum(out_dir + "/keyframes.tum", keyframeTrajectory(graph));
+  writeTum(out_dir + "/odometry.tum", odometryTrajectory(record.scans));
+
+  const std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
+  const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);
+  writeMap(map, out_dir + "/map.ply");
+  writeFile(out_dir + "/graph.json", graphJson(graph, floors));
+  writeFile(out_dir + "/graph.g2o", graphG2o(graph));
+  if (!graph.keyframes.empty())
+    for (const auto& [id, floor] : floors) writeStorey(record, floor, map, out_dir);
+  // Last: its presence says that the folder is complete.
+  writeFile(out_dir + "/summary.json", summaryJson(record));
+}
+
+}  // namespace sgraphs

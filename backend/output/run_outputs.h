@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "backend/backend.h"
+#include "backend/graph/situational_graph.h"
+#include "common/types/keyframe.h"
+
+namespace sgraphs {
+
+// Latency of one stage over a run.
+struct StageTiming {
+  double p50_ms = 0;
+  double p99_ms = 0;
+  int64_t count = 0;
+};
+
+// What a run leaves behind; `graph` must outlive the record.
+struct RunRecord {
+  const SituationalGraph* graph = nullptr;
+  std::vector<OdometryEstimate> scans;  // every scan, in order of time
+  std::map<std::string, FactorStatistics> factors;
+
+  // Facts for summary.json. Wall times and memory are the only ones that may differ between two replays.
+  std::string version;
+  std::string config_digest;
+  std::string input_digest;
+  std::string graph_digest;
+  bool reproducible = true;
+  std::string why_not;  // empty if reproducible
+  double duration_s = 0;
+  double wall_s = 0;
+  double realtime_factor = 0;
+  double peak_rss_mib = 0;
+  std::map<std::string, StageTiming> stages;
+  std::map<std::string, int64_t> gaps;  // messages lost per channel
+};
+
+// Writes every file of OUT (contract.md) that the keyframe layer can fill: trajectory.tum, keyframes.tum,
+// odometry.tum, map.ply, graph.json, graph.g2o, floorplan_f*.svg and .png, occupancy_f*.pgm and .yaml,
+// summary.json. Creates the folder. The same graph and scans give the same bytes, summary.json's wall times
+// excepted. Throws Error naming the file that cannot be written; a run without a keyframe writes what there
+// is (an empty map and no plans).
+void writeOutputs(const RunRecord& record, const std::string& out_dir);
+
+}  // namespace sgraphs

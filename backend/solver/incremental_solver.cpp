@@ -1,0 +1,210 @@
+#include "backend/solver/incremental_solver.h"
+
+#include <algorithm>
+
+#include "backend/solver/marginal_covariance.h"
+#include "backend/solver/region_solve.h"
+#include "backend/solver/state_graph.h"
+
+namespace sgraphs {
+namespace {
+
+// Neighbourhoods begin with this many steps along factors, and every growth doubles it.
+constexpr int kFirstHops = 3;
+
+// The set of states that are free in a local solve.
+class Region {
+ public:
+  explicit Region(const StateGraph& graph) : graph_(graph), inside_(graph.states.size(), false) {}
+
+  // Adds what is reachable from the seeds in `hops` steps over states that are neither held nor shared.
+  void grow(std::vector<int> seeds, int hops) {
+    std::vector<int> ring = keepFree(std::move(seeds));
+    for (int hop = 0; hop <= hops && !ring.empty(); ++hop) {
+      for (const int state : ring) inside_[static_cast<size_t>(state)] = true;
+      members_.insert(members_.end(), ring.begin(), ring.end());
+      ring = keepFree(neighbours(ring));
+    }
+    std::sort(members_.begin(), members_.end());
+  }
+
+  // Free states next to the region.
+  std::vector<int> rim() const { return keepFree(neighbours(members_)); }
+  const std::vector<int>& members() const { return members_; }
+
+ private:
+  std::vector<int> neighbours(const std::vector<int>& of) const {
+    std::vector<int> found;
+    for (const int state : of)
+      for (const int factor : graph_.states[static_cast<size_t>(state)].factors) {
+        const std::vector<int>& states = graph_.factors[static_cast<size_t>(factor)].states;
+        found.insert(found.end(), states.begin(), states.end());
+      }
+    return found;
+  }
+  // Sorted, without repetition, and without members, held and shared states.
+  std::vector<int> keepFree(std::vector<int> ids) const {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    std::erase_if(ids, [&](int id) {
+      const State& state = graph_.states[static_cast<size_t>(id)];
+      return state.held || state.shared || inside_[static_cast<size_t>(id)];
+    });
+    return ids;
+  }
+
+  const StateGraph& graph_;
+  std::vector<bool> inside_;
+  std::vector<int> members_;
+};
+
+}  // namespace
+
+class IncrementalSolver::Impl {
+ public:
+  explicit Impl(const SolverOptions& options) : options_(options) {}
+
+  Report solve(bool whole) {
+    Report report;
+    if (settled_) return report;
+    whole = whole || unfinished_ || static_cast<int>(graph.states.size()) <= options_.small_graph;
+    if (!whole && !seeds_.empty()) whole = !solveLocal(report);
+    seeds_.clear();
+    if (whole) solveWhole(report);
+    return report;
+  }
+
+  void markChanged(const std::vector<int>& states) {
+    seeds_.insert(seeds_.end(), states.begin(), states.end());
+    settled_ = false;
+  }
+  bool settled() const { return settled_; }
+
+  StateGraph graph;
+
+ private:
+  // False: what is new is not local, or too much has been left unresolved.
+  bool solveLocal(Report& report) {
+    Region region(graph);
+    region.grow(seeds_, kFirstHops);
+    for (int hops = 2 * kFirstHops;; hops *= 2) {
+      if (static_cast<int>(region.members().size()) > options_.max_region) return false;
+      const RegionOutcome outcome = solveRegion(graph, region.members(), options_.max_iterations);
+      report.iterations += outcome.iterations;
+      if (!outcome.converged) return false;
+      StepSize unresolved;
+      std::vector<int> moving;
+      for (const int state : region.rim()) {
+        const StepSize step = graph.newtonStep(state);
+        unresolved = {std::max(unresolved.m, step.m), std::max(unresolved.rad, step.rad)};
+        if (step.m > options_.grow_step_m || step.rad > options_.grow_step_rad) moving.push_back(state);
+      }
+      if (moving.empty()) {
+        report.free = region.members();
+        drift_.m += unresolved.m;
+        drift_.rad += unresolved.rad;
+        return drift_.m <= options_.drift_m && drift_.rad <= options_.drift_rad && sharedStatesRest();
+      }
+      region.grow(moving, hops);
+    }
+  }
+
+  bool sharedStatesRest() const {
+    for (size_t i = 0; i < graph.states.size(); ++i) {
+      if (!graph.states[i].shared || graph.states[i].factors.empty()) continue;
+      const StepSize step = graph.newtonStep(static_cast<int>(i));
+      if (step.m > options_.drift_m || step.rad > options_.drift_rad) return false;
+    }
+    return true;
+  }
+
+  void solveWhole(Report& report) {
+    std::vector<int> free;
+    for (size_t i = 0; i < graph.states.size(); ++i)
+      if (!graph.states[i].held && !graph.states[i].factors.empty()) free.push_back(static_cast<int>(i));
+    const RegionOutcome outcome = solveRegion(graph, free, options_.max_iterations);
+    report.whole = true;
+    report.converged = outcome.converged;
+    report.iterations += outcome.iterations;
+    report.free = std::move(free);
+    unfinished_ = !outcome.converged;
+    settled_ = outcome.converged;
+    drift_ = {};
+  }
+
+  SolverOptions options_;
+  std::vector<int> seeds_;   // states of the factors added since the last solve
+  bool unfinished_ = false;  // the last whole-graph solve ran out of iterations
+  bool settled_ = true;
+  StepSize drift_;  // left unresolved since the last whole-graph solve
+};
+
+IncrementalSolver::IncrementalSolver(const SolverOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+IncrementalSolver::~IncrementalSolver() = default;
+
+IncrementalSolver::StateId IncrementalSolver::addPose(const SE3& T) {
+  const StateId id = impl_->graph.addState(StateKind::kPose);
+  setPose(id, T);
+  return id;
+}
+
+IncrementalSolver::StateId IncrementalSolver::addSharedUnitVector(const Eigen::Vector3d& n) {
+  const StateId id = impl_->graph.addState(StateKind::kUnitVector);
+  impl_->graph.states.back().shared = true;
+  setUnitVector(id, n);
+  return id;
+}
+
+void IncrementalSolver::hold(StateId state) {
+  impl_->graph.states.at(static_cast<size_t>(state)).held = true;
+}
+
+IncrementalSolver::FactorId IncrementalSolver::addFactor(std::unique_ptr<ceres::CostFunction> cost,
+                                                         std::vector<StateId> states,
+                                                         std::optional<double> cauchy_scale) {
+  impl_->markChanged(states);
+  Factor factor;
+  factor.cost = std::move(cost);
+  if (cauchy_scale) factor.loss = std::make_unique<ceres::CauchyLoss>(*cauchy_scale);
+  factor.states = std::move(states);
+  return impl_->graph.addFactor(std::move(factor));
+}
+
+SE3 IncrementalSolver::pose(StateId state) const {
+  return PoseManifold::load(impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+void IncrementalSolver::setPose(StateId state, const SE3& T) {
+  PoseManifold::store(T, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+Eigen::Vector3d IncrementalSolver::unitVector(StateId state) const {
+  return Eigen::Vector3d(impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+void IncrementalSolver::setUnitVector(StateId state, const Eigen::Vector3d& n) {
+  std::copy_n(n.data(), 3, impl_->graph.states.at(static_cast<size_t>(state)).x.begin());
+}
+
+IncrementalSolver::Report IncrementalSolver::solve(bool whole) {
+  return impl_->solve(whole);
+}
+
+bool IncrementalSolver::settled() const {
+  return impl_->settled();
+}
+
+double IncrementalSolver::chi2(FactorId factor) const {
+  return impl_->graph.chi2(factor);
+}
+
+int IncrementalSolver::numResiduals(FactorId factor) const {
+  return impl_->graph.factors.at(static_cast<size_t>(factor)).cost->num_residuals();
+}
+
+std::optional<Matrix6d> IncrementalSolver::covariance(StateId pose) const {
+  const std::optional<Eigen::MatrixXd> covariance = marginalCovariance(impl_->graph, pose);
+  return covariance ? std::optional<Matrix6d>(*covariance) : std::nullopt;
+}
+
+}  // namespace sgraphs

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/se3.h"
+
+namespace ceres {
+class CostFunction;
+}
+
+namespace sgraphs {
+
+struct SolverOptions {
+  int max_iterations = 10;  // of one solve; the only budget there is (a time budget would not be repeatable)
+
+  // A neighbourhood grows while a state at its rim would still move by more than this.
+  double grow_step_m = 2e-5;
+  double grow_step_rad = 4e-6;
+  // What rounds left unresolved at their rims since the last whole-graph solve, summed, and what shared
+  // states
+  // (`up`) would move: more than this calls for a whole-graph solve.
+  double drift_m = 5e-4;
+  double drift_rad = 5e-5;
+
+  int max_region = 400;  // states; a larger neighbourhood is not local any more
+  int small_graph = 30;  // states; smaller graphs are solved whole, which costs nothing
+};
+
+// Nonlinear least squares over states on manifolds, grown factor by factor and solved in rounds: the
+// neighbourhood of what is new, or the whole graph. Single-threaded and a pure function of its calls.
+class IncrementalSolver {
+ public:
+  using StateId = int;   // dense, in order of creation
+  using FactorId = int;  // dense, in order of creation
+
+  struct Report {
+    bool whole = false;
+    bool converged = true;
+    int iterations = 0;
+    std::vector<StateId> free;  // states that were free to move, ascending
+  };
+
+  explicit IncrementalSolver(const SolverOptions& options);
+  ~IncrementalSolver();
+
+  StateId addPose(const SE3& T);
+  // A direction shared by many factors: free in whole-graph solves only, and no path for neighbourhoods.
+  StateId addSharedUnitVector(const Eigen::Vector3d& n);
+  // Held states never move: the gauge.
+  void hold(StateId state);
+
+  // The cost's parameters in order. `cauchy_scale`: robust, quadratic up to about this residual norm.
+  FactorId addFactor(std::unique_ptr<ceres::CostFunction> cost, std::vector<StateId> states,
+                     std::optional<double> cauchy_scale = {});
+
+  SE3 pose(StateId state) const;
+  void setPose(StateId state, const SE3& T);
+  Eigen::Vector3d unitVector(StateId state) const;
+  void setUnitVector(StateId state, const Eigen::Vector3d& n);
+
+  // Solves the neighbourhood of the factors added since the last call, or the whole graph where `whole` asks
+  // for it, a former whole-graph solve ran out of iterations, or too much was left unresolved.
+  Report solve(bool whole);
+  // True if the last solve was of the whole graph, converged, and nothing was added since.
+  bool settled() const;
+
+  // Squared norm of the factor's residual at the present states, without robust loss; its number of
+  // residuals.
+  double chi2(FactorId factor) const;
+  int numResiduals(FactorId factor) const;
+
+  // Marginal covariance of a pose at the present states, all others free. Costs a factorisation of the whole
+  // graph. None if the factors leave a state undetermined.
+  std::optional<Matrix6d> covariance(StateId pose) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sgraphs

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "backend/solver/state_graph.h"
+
+namespace sgraphs {
+
+struct RegionOutcome {
+  bool usable = true;     // false: the states are as before
+  bool converged = true;  // false: the iterations ran out
+  int iterations = 0;
+};
+
+// Minimises all factors that touch the free states (ascending ids, none held) over those states.
+RegionOutcome solveRegion(StateGraph& graph, const std::vector<int>& free, int max_iterations);
+
+}  // namespace sgraphs

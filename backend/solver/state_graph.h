@@ -1,0 +1,70 @@
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/manifold.h>
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "backend/factors/pose_manifold.h"
+#include "backend/factors/unit_vector_manifold.h"
+
+namespace sgraphs {
+
+enum class StateKind { kPose, kUnitVector };
+
+// Ceres keeps pointers to x, so states never move in memory.
+struct State {
+  StateKind kind = StateKind::kPose;
+  bool held = false;
+  bool shared = false;
+  std::array<double, 7> x{};
+  std::vector<int> factors;  // ascending
+};
+
+struct Factor {
+  std::unique_ptr<ceres::CostFunction> cost;
+  std::unique_ptr<ceres::LossFunction> loss;  // null: quadratic
+  std::vector<int> states;
+};
+
+// Length of a step: translation and rotation parts, each zero for states that have none.
+struct StepSize {
+  double m = 0;
+  double rad = 0;
+};
+
+// A factor linearised in the tangents of its states, the robust loss applied as Ceres applies it where the
+// loss is concave: residual and Jacobians times sqrt(rho').
+struct Linearised {
+  Eigen::VectorXd residual;
+  std::vector<Eigen::MatrixXd> jacobians;  // one per state; empty where not asked for
+};
+
+// States and the factors between them: the arena all parts of the solver work on.
+class StateGraph {
+ public:
+  std::deque<State> states;
+  std::vector<Factor> factors;
+
+  int addState(StateKind kind);
+  int addFactor(Factor factor);
+
+  ceres::Manifold* manifold(StateKind kind);
+  const ceres::Manifold& manifold(StateKind kind) const;
+
+  double chi2(int factor) const;
+  // Jacobians for the state `only`, or for all of the factor's states if it is -1.
+  Linearised linearise(int factor, int only = -1) const;
+  // The Gauss-Newton step of one state, all others held.
+  StepSize newtonStep(int state) const;
+
+ private:
+  PoseManifold pose_manifold_;
+  UnitVectorManifold unit_vector_manifold_;
+};
+
+}  // namespace sgraphs

@@ -1,0 +1,200 @@
+#include "perception/odometry/odometry_node.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/bus/status.h"
+
+namespace sgraphs {
+namespace {
+
+// A stamp further than this from all others is an error of its source and would stop the queue for good.
+constexpr Duration kMaxTimeJump{3'600'000'000};
+// A sweep in more chunks than this is no sweep (2800 points each).
+constexpr int kMaxSweepChunks = 1000;
+
+}  // namespace
+
+OdometryNode::OdometryNode(Bus& bus, OdometryParts parts, const std::string& odometry_override)
+    : publisher_(bus), bus_(bus), parts_(std::move(parts)), odometry_override_(odometry_override) {
+  if (!odometry_override.empty()) parseOdometryMode(odometry_override);
+  const auto listen = [this](const auto& channel, auto handler) {
+    subscribe(
+        bus_, channel, [this, handler](const auto& m) { (this->*handler)(m); },
+        [this, name = std::string(channel.name)] { gate_.reject(name, "undecodable"); });
+  };
+  listen(channels::kSession, &OdometryNode::onSession);
+  listen(channels::kVelodynePackets, &OdometryNode::onPackets);
+  listen(channels::kLidarPoints, &OdometryNode::onPoints);
+  listen(channels::kSpotOdometry, &OdometryNode::onSpotOdometry);
+  listen(channels::kStreamEnd, &OdometryNode::onStreamEnd);
+}
+
+void OdometryNode::onSession(const session_t& m) {
+  if (done()) return;
+  const std::string channel = channels::kSession.name;
+  if (session_) {
+    if (gate_.accept(channel, m.header)) plausible(channel, Time{m.header.utime});
+    return;
+  }
+  std::optional<Session> session = fromMessage(m);
+  if (!session)
+    return gate_.reject(channel, "no session id, another schema, or content that cannot be right");
+  if (!gate_.accept(channel, m.header)) return;
+  if (!odometry_override_.empty()) session->odometry_mode = odometry_override_;
+  mode_ = session->odometryMode();
+  if (mode_ != OdometryMode::kLidar && !session->has_odometry)
+    throw Error("odometry mode '" + toString(mode_) +
+                "' needs SPOT_ODOMETRY, which this recording does not carry: use --odometry lidar");
+  session_ = std::move(session);
+  publisher_.setSession(session_->id);
+  first_time_ = newest_time_ = session_->start;
+  queue_ = ScanQueue(mode_ != OdometryMode::kLidar);
+  decode_ = parts_.make_decoder();
+  step_ = parts_.make_step(mode_, session_->T_body_lidar);
+}
+
+bool OdometryNode::enter(const std::string& channel, const header_t& header) {
+  if (done()) return false;
+  if (!session_) {
+    gate_.reject(channel, "before SESSION");
+    return false;
+  }
+  return gate_.accept(channel, header);
+}
+
+bool OdometryNode::plausible(const std::string& channel, Time time) {
+  if (time > newest_time_ + kMaxTimeJump || time < first_time_ - kMaxTimeJump) {
+    gate_.reject(channel, "sensor time jumps by more than an hour");
+    return false;
+  }
+  newest_time_ = std::max(newest_time_, time);
+  return true;
+}
+
+void OdometryNode::onPackets(const velodyne_packets_t& m) {
+  const std::string channel = channels::kVelodynePackets.name;
+  if (!enter(channel, m.header)) return;
+  const auto packets = fromMessage(m);
+  if (!packets) return gate_.reject(channel, "counts that do not match");
+  for (size_t i = 0; i < packets->size(); ++i) {
+    const VelodynePacket& packet = (*packets)[i];
+    if (packet.time < newest_packet_) return gate_.reject(channel, "time runs backwards");
+    if (!plausible(channel, packet.time)) return;
+    newest_packet_ = packet.time;
+    const Stopwatch watch;
+    std::optional<LidarScan> scan = decode_(packet);
+    decode_latency_.add(watch.elapsedUs());
+    if (scan) addScan(channel, std::move(*scan));
+  }
+  workOff();
+}
+
+void OdometryNode::onPoints(const lidar_points_t& m) {
+  const std::string channel = channels::kLidarPoints.name;
+  if (!enter(channel, m.header)) return;
+  if (m.num_chunks < 1 || m.num_chunks > kMaxSweepChunks || m.chunk < 0 || m.chunk >= m.num_chunks)
+    return gate_.reject(channel, "counts that do not match");
+  if (m.chunk == 0) sweep_.clear();
+  // A sweep that lost a chunk is left out: the gate has counted the loss.
+  if (m.chunk != static_cast<int32_t>(sweep_.size()) || (m.chunk > 0 && m.sweep != sweep_.front().sweep))
+    return sweep_.clear();
+  sweep_.push_back(m);
+  if (m.chunk + 1 < m.num_chunks) return;
+  std::optional<LidarScan> scan = fromMessages(sweep_);
+  sweep_.clear();
+  if (!scan) return gate_.reject(channel, "counts that do not match");
+  if (!plausible(channel, scan->end)) return;
+  addScan(channel, std::move(*scan));
+  workOff();
+}
+
+void OdometryNode::onSpotOdometry(const spot_odometry_t& m) {
+  const std::string channel = channels::kSpotOdometry.name;
+  if (!enter(channel, m.header)) return;
+  const std::optional<BodyOdometry> sample = fromMessage(m);
+  if (!sample) return gate_.reject(channel, "not a finite pose");
+  if (!plausible(channel, sample->time) || mode_ == OdometryMode::kLidar) return;
+  switch (queue_.addOdometry(*sample)) {
+    case ScanQueue::Fate::kBackwards:
+      return gate_.reject(channel, "time runs backwards");
+    case ScanQueue::Fate::kLate:
+      if (++oddities_["late odometry samples"] == 1)
+        spdlog::warn("{}: odometry comes later than {} scans after its own and is dropped", channel,
+                     ScanQueue::kPatience);
+      return;
+    case ScanQueue::Fate::kKept:
+      workOff();
+  }
+}
+
+void OdometryNode::onStreamEnd(const stream_end_t& m) {
+  if (!enter(channels::kStreamEnd.name, m.header)) return;
+  for (const char* channel : {channels::kSession.name, channels::kVelodynePackets.name,
+                              channels::kLidarPoints.name, channels::kSpotOdometry.name})
+    closeChannel(gate_, m, channel);
+  finish(m.why_not);
+}
+
+void OdometryNode::addScan(const std::string& channel, LidarScan scan) {
+  if (queue_.addScan(std::move(scan)) == ScanQueue::Fate::kBackwards)
+    gate_.reject(channel, "scan that does not end after the one before");
+}
+
+void OdometryNode::workOff() {
+  while (std::optional<ScanQueue::Ready> ready = queue_.pop()) {
+    if (!ready->complete) ++oddities_["scans without odometry up to their end"];
+    const Stopwatch watch;
+    const std::optional<OdometryOutput> output = step_(ready->scan, ready->odometry);
+    step_latency_.add(watch.elapsedUs());
+    if (output)
+      publishScan(*output);
+    else
+      ++oddities_["scans that could not be used"];
+  }
+}
+
+void OdometryNode::publishScan(const OdometryOutput& output) {
+  ++scans_;
+  if (output.keyframe)
+    for (keyframe_t& chunk : toMessages(*output.keyframe)) publisher_.send(channels::kKeyframe, chunk);
+  const OdometryEstimate& estimate = output.estimate;
+  odometry_t message = toMessage(estimate);
+  publisher_.send(channels::kOdometry, message);
+  publisher_.sendPlain(channels::kPoseOdom,
+                       toPoseMessage(estimate.time, estimate.T_odom_body, estimate.twist_body));
+}
+
+void OdometryNode::finish(const std::string& why_not) {
+  if (done()) return;
+  queue_.close();
+  workOff();
+  stream_end_t end{};
+  end.header.utime = newest_time_.us;
+  end.why_not = gate_.trouble();
+  if (!why_not.empty()) end.why_not += (end.why_not.empty() ? "" : "; ") + why_not;
+  publisher_.addTo(end, channels::kOdometry.name);
+  publisher_.addTo(end, channels::kKeyframe.name);
+  publisher_.send(channels::kOdometryEnd, end);
+  end_ = std::move(end);
+}
+
+void OdometryNode::repeatEnd() {
+  if (end_) publish(bus_, channels::kOdometryEnd, *end_);
+}
+
+void OdometryNode::publishStatus() {
+  const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
+  status_t status = makeStatus("sgraphs-odometry", state, gate_, publisher_, queue_.size(), step_latency_);
+  status.header.utime = newest_time_.us;
+  publisher_.send(channels::kStatusOdometry, status);
+}
+
+Duration OdometryNode::duration() const {
+  return newest_time_ - first_time_;
+}
+
+}  // namespace sgraphs

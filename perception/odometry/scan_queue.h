@@ -1,0 +1,54 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/types/lidar_scan.h"
+#include "common/types/session.h"
+
+namespace sgraphs {
+
+// Holds a scan until its inputs are there. Without odometry a scan waits for nothing; with it scan s waits
+// until a sample at or after its end has come, or scan s+10 exists, or the stream has ended. The order of
+// arrival on one stream decides, never a clock.
+class ScanQueue {
+ public:
+  static constexpr size_t kPatience = 10;       // scans that may arrive while one waits
+  static constexpr size_t kMaxSamples = 20000;  // without scans the oldest samples go first
+
+  enum class Fate {
+    kKept,
+    kBackwards,  // not after the one before it
+    kLate,       // its scan went without it
+  };
+  struct Ready {
+    LidarScan scan;
+    std::vector<BodyOdometry>
+        odometry;          // from the last at or before scan.begin to the first at or after its end
+    bool complete = true;  // the samples reach the scan's end (or none are asked for)
+  };
+
+  explicit ScanQueue(bool waits_for_odometry) : waits_for_odometry_(waits_for_odometry) {}
+
+  Fate addScan(LidarScan scan);
+  Fate addOdometry(const BodyOdometry& sample);
+  // Nothing more will arrive: every scan held is ready.
+  void close() { closed_ = true; }
+  // The oldest scan, if it is ready.
+  std::optional<Ready> pop();
+
+  size_t size() const { return scans_.size(); }
+  size_t samples() const { return samples_.size(); }
+
+ private:
+  std::vector<BodyOdometry> samplesFor(const LidarScan& scan);
+
+  bool waits_for_odometry_;
+  bool closed_ = false;
+  std::deque<LidarScan> scans_;
+  std::deque<BodyOdometry> samples_;
+  std::optional<Time> newest_scan_, newest_sample_, released_;
+};
+
+}  // namespace sgraphs

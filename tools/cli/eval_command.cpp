@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <memory>
+
+#include "common/io/text_file.h"
+#include "tools/cli/commands.h"
+#include "tools/eval/eval_plots.h"
+#include "tools/eval/eval_report.h"
+#include "tools/eval/evaluate.h"
+
+namespace sgraphs::cli {
+namespace {
+
+struct Options {
+  std::string out_dir;
+  std::string truth_dir;
+};
+
+void run(const Options& options) {
+  const Truth truth = readTruth(options.truth_dir);
+  const Evaluation evaluation = evaluate(options.out_dir, truth);
+  std::fputs(evaluationTable(evaluation).c_str(), stdout);
+  writeFile(options.out_dir + "/eval.json", evaluationJson(evaluation));
+  writeFile(options.out_dir + "/eval_trajectory.png", trajectoryPlot(evaluation, truth));
+  writeFile(options.out_dir + "/eval_error.png", errorPlot(evaluation, truth));
+  const std::string map = mapPlot(evaluation, truth);
+  if (!map.empty()) writeFile(options.out_dir + "/eval_map.png", map);
+  std::printf("wrote %s/eval.json, eval_trajectory.png, eval_error.png%s\n", options.out_dir.c_str(),
+              map.empty() ? "" : ", eval_map.png");
+}
+
+}  // namespace
+
+void addEval(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("eval", "Judge a run's OUT against the truth: table, eval.json, plots");
+  command->add_option("OUT", options->out_dir, "folder that 'sgraphs replay' wrote")->required();
+  command
+      ->add_option("--truth", options->truth_dir,
+                   "folder with gt.tum (body in the building's frame), and optionally mesh.ply and plan.json")
+      ->required();
+  command->footer(
+      "Example:\n  sgraphs eval out --truth truth\n\n"
+      "ATE: translation after SE(3) alignment without scale, truth interpolated at the estimate's stamps;\n"
+      "evo: the same with evo_ape's nearest stamps. The alignment of trajectory.tum moves the map.\n"
+      "Completeness: mesh area within 10 m and line of sight of the path that has a map point within 5 cm.\n"
+      "NEES: 3 if the links' covariances are what they claim to be.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace sgraphs::cli

@@ -1,0 +1,72 @@
+#include <cstdio>
+#include <memory>
+
+#include "common/base/error.h"
+#include "drivers/recording/log_edit.h"
+#include "drivers/recording/log_summary.h"
+#include "tools/cli/commands.h"
+
+namespace sgraphs::cli {
+namespace {
+
+struct Arguments {
+  std::string input, output;
+  LogSelection selection;
+  std::vector<std::string> channels;
+};
+
+void addInfo(CLI::App& log) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = log.add_subcommand("info", "List a log's channels, session and damage");
+  command->add_option("LOG", *path, "LCM log")->required();
+  command->footer("Example:\n  sgraphs log info run.lcmlog");
+  command->callback([path] { std::fputs(toText(summariseLog(*path), *path).c_str(), stdout); });
+}
+
+void copy(const Arguments& arguments) {
+  const int64_t events = copyLog(arguments.input, arguments.output, arguments.selection);
+  std::printf("%s: %lld events\n", arguments.output.c_str(), static_cast<long long>(events));
+}
+
+void addCut(CLI::App& log) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = log.add_subcommand("cut", "Copy a stretch of time");
+  command->add_option("LOG", arguments->input, "LCM log")->required();
+  command->add_option("--from", arguments->selection.from_s, "Begin, since the log's first event [s]");
+  command->add_option("--to", arguments->selection.to_s, "End, since the log's first event [s]");
+  command->add_option("-o,--output", arguments->output, "LCM log to write")->required();
+  command->footer("Example:\n  sgraphs log cut run.lcmlog --from 10 --to 40 -o part.lcmlog");
+  command->callback([arguments] {
+    if (!(arguments->selection.from_s <= arguments->selection.to_s))
+      throw UsageError("--from must not lie behind --to");
+    copy(*arguments);
+  });
+}
+
+void addFilter(CLI::App& log) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = log.add_subcommand("filter", "Copy some channels (SESSION and STREAM_END stay)");
+  command->add_option("LOG", arguments->input, "LCM log")->required();
+  command->add_option("--channels", arguments->channels, "Channels to keep, A,B,…")
+      ->required()
+      ->delimiter(',');
+  command->add_option("-o,--output", arguments->output, "LCM log to write")->required();
+  command->footer("Example:\n  sgraphs log filter run.lcmlog --channels VELODYNE_PACKETS -o lidar.lcmlog");
+  command->callback([arguments] {
+    arguments->selection.channels = {arguments->channels.begin(), arguments->channels.end()};
+    copy(*arguments);
+  });
+}
+
+}  // namespace
+
+void addLog(CLI::App& app) {
+  CLI::App* log = app.add_subcommand("log", "Look into LCM logs, cut and filter them");
+  log->require_subcommand(1);
+  log->footer("Example:\n  sgraphs log info run.lcmlog");
+  addInfo(*log);
+  addCut(*log);
+  addFilter(*log);
+}
+
+}  // namespace sgraphs::cli

@@ -1,0 +1,95 @@
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "backend/output/run_outputs.h"
+#include "common/base/error.h"
+#include "common/base/performance.h"
+#include "tools/cli/commands.h"
+#include "tools/system/replay.h"
+
+namespace sgraphs::cli {
+namespace {
+
+struct Arguments {
+  std::string log, out_dir, config_file, map_dir, odometry, layers = "floors";
+  std::vector<std::string> assignments;
+  int threads = 0;
+};
+
+SystemConfig configOf(const Arguments& arguments) {
+  SystemConfig config;
+  if (!arguments.config_file.empty()) loadConfigFile(visitOf(config), arguments.config_file);
+  for (const std::string& assignment : arguments.assignments) setConfigValue(visitOf(config), assignment);
+  if (arguments.threads > 0) config.odometry.threads = arguments.threads;
+  return config;
+}
+
+// One line on a terminal, renewed twice a second.
+std::function<void(const ReplayProgress&)> progressLine() {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [watch = Stopwatch()](const ReplayProgress& p) mutable {
+    if (watch.elapsedSeconds() < 0.5) return;
+    watch.restart();
+    std::fprintf(stderr, "\rreplay %3.0f %%  %.0f s of recording  %.1f x real time ", 100 * p.share,
+                 p.sensor_s, p.wall_s > 0 ? p.sensor_s / p.wall_s : 0.0);
+  };
+}
+
+void report(const RunRecord& record, const std::string& out_dir) {
+  std::printf("%s: %zu scans, %zu keyframes, %.1f s of recording in %.1f s (%.1f x real time), %.0f MiB\n",
+              out_dir.c_str(), record.scans.size(), record.graph->keyframes.size(), record.duration_s,
+              record.wall_s, record.realtime_factor, record.peak_rss_mib);
+  for (const auto& [stage, timing] : record.stages)
+    std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   %lld steps\n", stage.c_str(), timing.p50_ms,
+                timing.p99_ms, static_cast<long long>(timing.count));
+  std::printf("graph_digest %s\n", record.graph_digest.c_str());
+}
+
+void run(const Arguments& arguments, bool layers_given) {
+  if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
+  ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry, progressLine()};
+  if (layers_given && arguments.layers != "keyframes")
+    std::fprintf(stderr, "sgraphs: warning: --layers %s: this version fills the keyframe layer only\n",
+                 arguments.layers.c_str());
+  Replay replay(std::move(options));
+  replay.run();
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%60s\r", "");
+  for (const std::string& warning : replay.warnings())
+    std::fprintf(stderr, "sgraphs: warning: %s\n", warning.c_str());
+  const RunRecord record = replay.record();
+  writeOutputs(record, arguments.out_dir);
+  report(record, arguments.out_dir);
+  if (record.reproducible) return;
+  std::fprintf(stderr, "sgraphs: not reproducible: %s\n", record.why_not.c_str());
+  throw ExitCode{kExitNotReproducible};
+}
+
+}  // namespace
+
+void addReplay(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("replay", "A recorded log becomes a map and a trajectory");
+  command->footer("Example:\n  sgraphs replay run.lcmlog -o OUT --threads 2");
+  command->add_option("log", arguments->log, "LCM log with SESSION and raw channels")->required();
+  command->add_option("-o,--output", arguments->out_dir, "Folder for the result")->required();
+  command->add_option("--config", arguments->config_file,
+                      "YAML file of settings (config/sgraphs.yaml has them all)");
+  command->add_option("--set", arguments->assignments, "One setting, section.key=value; may be repeated")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--threads", arguments->threads, "Worker threads; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
+  command->add_option(
+      "--odometry", arguments->odometry,
+      "Odometry factor: lidar, encoder or fused; default: fused if the log has odometry, else lidar");
+  CLI::Option* layers = command->add_option("--layers", arguments->layers, "Highest layer of the graph")
+                            ->check(CLI::IsMember({"keyframes", "walls", "rooms", "floors"}))
+                            ->capture_default_str();
+  command->add_option("--map", arguments->map_dir,
+                      "Result of an earlier run to continue (not in this version)");
+  command->callback([arguments, layers] { run(*arguments, layers->count() > 0); });
+}
+
+}  // namespace sgraphs::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/io/ply.h"
+#include "tools/eval/evaluate.h"
+
+namespace sgraphs {
+
+// PNG files, in the building's frame. A picture without anything to show is an empty string.
+std::string trajectoryPlot(const Evaluation& evaluation, const Truth& truth);  // over the walls at 1 m height
+std::string errorPlot(const Evaluation& evaluation, const Truth& truth);       // error over time
+std::string mapPlot(const Evaluation& evaluation, const Truth& truth);         // map coloured by its error
+
+// Where a mesh crosses a height, seen from above.
+std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sliceMesh(const TriangleMesh& mesh, double z_m);
+
+}  // namespace sgraphs

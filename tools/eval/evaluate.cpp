@@ -1,0 +1,105 @@
+#include "tools/eval/evaluate.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/io/text_file.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr Duration kMaxGap{200'000};
+constexpr double kRelativePath_m = 1.0;
+constexpr Duration kRelativeTime{1'000'000};
+
+TrajectoryResult judgeTrajectory(const std::string& out_dir, const std::string& file, const Truth& truth) {
+  TrajectoryResult result;
+  result.file = file;
+  const std::string path = out_dir + "/" + file;
+  if (!std::filesystem::exists(path)) {
+    result.missing = "OUT has no such file";
+    return result;
+  }
+  try {
+    result.poses = readTum(path);
+    result.absolute = absoluteError(truth.poses, result.poses);
+  } catch (const Error& error) {
+    result.missing = error.what();
+    return result;
+  }
+  result.nearest_stamp_m = absoluteErrorNearestStamp(truth.poses, result.poses);
+  result.per_metre = relativeErrorPerPath(truth.poses, result.poses, kRelativePath_m);
+  result.per_second = relativeErrorPerTime(truth.poses, result.poses, kRelativeTime);
+  result.time_coverage = timeCoverage(truth.poses, result.poses, kMaxGap);
+  return result;
+}
+
+MapResult judgeMap(const std::string& out_dir, const Truth& truth, const SE3& T_truth_map) {
+  MapResult result;
+  const std::string path = out_dir + "/map.ply";
+  if (!std::filesystem::exists(path)) {
+    result.missing = "OUT has no map.ply";
+    return result;
+  }
+  for (const auto& p : readPlyPoints(path).points)
+    result.points_truth.push_back(T_truth_map * p.cast<double>());
+  if (!truth.mesh) result.missing = "the truth has no mesh.ply";
+  if (result.points_truth.empty()) result.missing = "map.ply holds no point";
+  if (!result.missing.empty()) return result;
+  std::vector<Eigen::Vector3d> walked;
+  for (const auto& pose : truth.poses) walked.push_back(pose.pose.translation);
+  result.error = mapError(*truth.mesh, result.points_truth, walked);
+  return result;
+}
+
+// Counts the graph's nodes by layer, and its doorways, which are links.
+std::map<std::string, size_t> countLayers(const std::string& graph_json_path) {
+  std::map<std::string, size_t> counts;
+  if (!std::filesystem::exists(graph_json_path)) return counts;
+  try {
+    const auto json = nlohmann::json::parse(readFile(graph_json_path));
+    for (const auto& node : json.at("nodes")) ++counts[node.at("layer")];
+    for (const auto& link : json.at("links")) counts["doorways"] += link.at("kind") == "doorway";
+  } catch (const nlohmann::json::exception& error) {
+    throw Error("cannot read graph '" + graph_json_path + "': " + error.what());
+  }
+  return counts;
+}
+
+std::vector<LayerResult> judgeLayers(const std::string& out_dir, const Truth& truth) {
+  auto counts = countLayers(out_dir + "/graph.json");
+  std::vector<LayerResult> layers;
+  for (const char* layer : {"walls", "rooms", "floors", "doorways"})
+    layers.push_back({layer, counts[layer], std::nullopt});
+  if (truth.plan) {
+    layers[0].asked = truth.plan->num_walls;
+    layers[1].asked = askedRooms(*truth.plan, truth.poses).size();
+    layers[2].asked = truth.plan->floors_z_m.size();
+    layers[3].asked = truth.plan->num_doorways;
+  }
+  return layers;
+}
+
+}  // namespace
+
+Evaluation evaluate(const std::string& out_dir, const Truth& truth) {
+  if (!std::filesystem::exists(out_dir + "/trajectory.tum"))
+    throw Error("'" + out_dir + "' holds no trajectory.tum: make it with 'sgraphs replay LOG -o " + out_dir +
+                "'");
+  Evaluation evaluation;
+  for (const char* file : {"trajectory.tum", "keyframes.tum", "odometry.tum"})
+    evaluation.trajectories.push_back(judgeTrajectory(out_dir, file, truth));
+  // Without the alignment nothing else can be judged.
+  const TrajectoryResult& first = evaluation.trajectories.front();
+  if (!first.missing.empty()) throw Error("cannot judge '" + out_dir + "/trajectory.tum': " + first.missing);
+  evaluation.map = judgeMap(out_dir, truth, first.absolute.T_truth_map);
+  if (std::filesystem::exists(out_dir + "/graph.json"))
+    evaluation.calibration = calibrationOf(readMeasuredLinks(out_dir + "/graph.json"), truth.poses);
+  if (evaluation.calibration.empty())
+    evaluation.calibration_missing = "graph.json has no links with a covariance in the truth's time";
+  evaluation.layers = judgeLayers(out_dir, truth);
+  return evaluation;
+}
+
+}  // namespace sgraphs

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/eval/calibration.h"
+#include "tools/eval/map_error.h"
+#include "tools/eval/trajectory_error.h"
+#include "tools/eval/truth.h"
+
+namespace sgraphs {
+
+// How one of OUT's trajectories does; everything but `file` and `missing` is void if it is missing.
+struct TrajectoryResult {
+  std::string file;
+  std::string missing;  // why it was not judged; empty if it was
+  std::vector<StampedPose> poses;
+  AbsoluteError absolute;
+  std::optional<ErrorStatistics> nearest_stamp_m;  // evo's
+  std::optional<RelativeError> per_metre;
+  std::optional<RelativeError> per_second;
+  double time_coverage = 0;
+};
+
+struct MapResult {
+  std::string missing;  // why it was not judged; empty if it was
+  std::vector<Eigen::Vector3d> points_truth;
+  MapError error;
+
+  // contract.md: a map RMSE counts only with this completeness.
+  static constexpr double kMinCompleteness = 0.90;
+  bool counts() const { return error.completeness >= kMinCompleteness; }
+};
+
+// A layer that the truth asks for, or the graph has.
+struct LayerResult {
+  std::string layer;
+  size_t in_graph = 0;
+  std::optional<size_t> asked;  // by plan.json
+};
+
+struct Evaluation {
+  std::vector<TrajectoryResult> trajectories;  // the first one's alignment moves everything else
+  MapResult map;
+  std::map<std::string, Calibration> calibration;
+  std::string calibration_missing;
+  std::vector<LayerResult> layers;
+};
+
+// Judges the folder OUT. Throws Error if it holds no trajectory.tum or a file of it cannot be read.
+Evaluation evaluate(const std::string& out_dir, const Truth& truth);
+
+}  // namespace sgraphs

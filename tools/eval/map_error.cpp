@@ -1,0 +1,139 @@
+#include "tools/eval/map_error.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr double kSight_m = 10;
+constexpr double kNear_m = 0.05;
+constexpr double kSampleSpacing_m = 0.14;  // longest edge: legs of 0.1 m
+constexpr double kPathStep_m = 0.25;
+constexpr double kSightMargin_m = 0.005;
+
+// Points in cells of the search radius, sorted by cell: found again by binary search.
+class PointGrid {
+ public:
+  PointGrid(const std::vector<Eigen::Vector3d>& points, double radius) : radius_(radius) {
+    for (const auto& p : points) entries_.push_back({cellOf(p), p});
+    std::sort(entries_.begin(), entries_.end(),
+              [](const Entry& a, const Entry& b) { return a.cell < b.cell; });
+  }
+
+  bool anyWithinRadius(const Eigen::Vector3d& p) const {
+    const Cell center = cellOf(p);
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y) {
+        // Cells of one column lie side by side.
+        const Cell low{center[0] + x, center[1] + y, center[2] - 1};
+        const Cell high{low[0], low[1], center[2] + 1};
+        auto it = std::lower_bound(entries_.begin(), entries_.end(), low,
+                                   [](const Entry& e, const Cell& cell) { return e.cell < cell; });
+        for (; it != entries_.end() && it->cell <= high; ++it)
+          if ((it->point - p).squaredNorm() <= radius_ * radius_) return true;
+      }
+    return false;
+  }
+
+ private:
+  using Cell = std::array<int64_t, 3>;
+  struct Entry {
+    Cell cell;
+    Eigen::Vector3d point;
+  };
+
+  Cell cellOf(const Eigen::Vector3d& p) const {
+    Cell cell;
+    for (int k = 0; k < 3; ++k)
+      cell[static_cast<size_t>(k)] = static_cast<int64_t>(std::floor(p[k] / radius_));
+    return cell;
+  }
+
+  double radius_;
+  std::vector<Entry> entries_;
+};
+
+std::vector<Eigen::Vector3d> thinPath(const std::vector<Eigen::Vector3d>& path) {
+  std::vector<Eigen::Vector3d> thin;
+  for (const auto& p : path)
+    if (thin.empty() || (p - thin.back()).norm() >= kPathStep_m) thin.push_back(p);
+  return thin;
+}
+
+// Nearest viewpoints first: most samples are seen from one of them.
+bool seenFromPath(const MeshQuery& query, const Eigen::Vector3d& sample,
+                  const std::vector<Eigen::Vector3d>& path, std::vector<std::pair<double, size_t>>& near) {
+  near.clear();
+  for (size_t i = 0; i < path.size(); ++i) {
+    const double squared = (path[i] - sample).squaredNorm();
+    if (squared <= kSight_m * kSight_m) near.emplace_back(squared, i);
+  }
+  std::sort(near.begin(), near.end());
+  for (const auto& [squared, i] : near)
+    if (!query.occluded(path[i], sample, kSightMargin_m)) return true;
+  return false;
+}
+
+void halve(const std::array<Eigen::Vector3d, 3>& t, double spacing, std::vector<SurfaceSample>& samples) {
+  int longest = 0;
+  double length = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double edge = (t[static_cast<size_t>((k + 1) % 3)] - t[static_cast<size_t>(k)]).norm();
+    if (edge > length) length = edge, longest = k;
+  }
+  if (length <= spacing) {
+    const double area = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    samples.push_back({(t[0] + t[1] + t[2]) / 3, area});
+    return;
+  }
+  const auto& a = t[static_cast<size_t>(longest)];
+  const auto& b = t[static_cast<size_t>((longest + 1) % 3)];
+  const auto& c = t[static_cast<size_t>((longest + 2) % 3)];
+  const Eigen::Vector3d middle = 0.5 * (a + b);
+  halve({a, middle, c}, spacing, samples);
+  halve({middle, b, c}, spacing, samples);
+}
+
+}  // namespace
+
+std::vector<SurfaceSample> sampleSurface(const TriangleMesh& mesh, double spacing_m) {
+  std::vector<SurfaceSample> samples;
+  for (const auto& t : mesh.triangles)
+    halve({mesh.vertices[t.x()], mesh.vertices[t.y()], mesh.vertices[t.z()]}, spacing_m, samples);
+  return samples;
+}
+
+MapError mapError(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& points_truth,
+                  const std::vector<Eigen::Vector3d>& path_truth) {
+  if (points_truth.empty()) throw Error("map.ply holds no point: nothing was mapped");
+  const MeshQuery query(mesh);
+  MapError result;
+  std::vector<double> distances;
+  for (const auto& p : points_truth) {
+    // Wide enough for any point of a building; a point beyond is as far as the query goes.
+    constexpr double kFarthest_m = 1000;
+    distances.push_back(query.distance(p, kFarthest_m).value_or(kFarthest_m));
+    result.distances_m.push_back(static_cast<float>(distances.back()));
+  }
+  result.distance_m = statisticsOf(std::move(distances));
+
+  const PointGrid grid(points_truth, kNear_m);
+  const auto path = thinPath(path_truth);
+  double covered_m2 = 0;
+  std::vector<std::pair<double, size_t>> scratch;
+  for (const SurfaceSample& sample : sampleSurface(mesh, kSampleSpacing_m)) {
+    if (!seenFromPath(query, sample.position, path, scratch)) continue;
+    result.visible_area_m2 += sample.area_m2;
+    if (grid.anyWithinRadius(sample.position)) covered_m2 += sample.area_m2;
+  }
+  if (result.visible_area_m2 > 0) result.completeness = covered_m2 / result.visible_area_m2;
+  return result;
+}
+
+}  // namespace sgraphs

@@ -1,0 +1,134 @@
+#include "tools/system/process.h"
+
+#include <signal.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/base/performance.h"
+#include "common/types/session.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr double kEndOverdue_s = 30;
+constexpr int kPoll_ms = 100;
+
+sigset_t stopSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+// SIGINT and SIGTERM, blocked by runProcess, as a question instead of an interruption.
+class SignalWatch {
+ public:
+  SignalWatch() {
+    const sigset_t signals = stopSignals();
+    file_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
+  }
+  ~SignalWatch() { close(file_); }
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+  bool stopRequested() {
+    signalfd_siginfo info{};
+    return read(file_, &info, sizeof info) == static_cast<ssize_t>(sizeof info);
+  }
+
+ private:
+  int file_ = -1;
+};
+
+int failed(const std::string& name, const std::exception& e, int code) {
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
+  return code;
+}
+
+}  // namespace
+
+int runProcess(const ProcessText& text, int argc, char** argv,
+               const std::function<int(const ProcessSetup&)>& body) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt(text.name));
+  spdlog::set_pattern("%n: %v");
+  ProcessSetup setup;
+  std::string config_file;
+  std::vector<std::string> assignments;
+  int threads = 0;
+  CLI::App app(text.purpose, text.name);
+  app.footer("Example:\n  " + text.example);
+  app.set_version_flag("--version", text.name + " " SGRAPHS_VERSION);
+  app.add_option("--lcm-url", setup.lcm_url, "LCM provider; default: $LCM_DEFAULT_URL, else LCM's own");
+  app.add_option("--config", config_file, "YAML file of settings");
+  app.add_option("--set", assignments, "One setting, section.key=value; may be repeated");
+  app.add_option("--threads", threads, "Worker threads; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--odometry", setup.odometry, "lidar, encoder or fused in place of SESSION's choice");
+  app.add_flag("--stay", setup.stay, "Do not exit when the stream has ended");
+  app.add_option("--end-after-silence", setup.end_after_silence_s,
+                 "End the stream after so many seconds without a message; 0: never")
+      ->check(CLI::NonNegativeNumber);
+  bool print_config = false;
+  app.add_flag("--print-config", print_config, "Print the configuration in force and exit");
+  if (text.writes_output) app.add_option("-o,--output", setup.output_dir, "Folder to write the result to");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kExitDone : kExitUsage;
+  }
+  try {
+    // Before any other thread exists, so that all of them inherit it.
+    const sigset_t signals = stopSignals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    if (!config_file.empty()) loadConfigFile(visitOf(setup.config), config_file);
+    for (const std::string& assignment : assignments) setConfigValue(visitOf(setup.config), assignment);
+    if (threads > 0) setup.config.odometry.threads = threads;
+    if (!setup.odometry.empty()) parseOdometryMode(setup.odometry);
+    if (print_config) {
+      std::fputs(configToYaml(visitOf(setup.config)).c_str(), stdout);
+      return kExitDone;
+    }
+    return body(setup);
+  } catch (const UsageError& e) {
+    return failed(text.name, e, kExitUsage);
+  } catch (const std::exception& e) {
+    return failed(text.name, e, kExitFailed);
+  }
+}
+
+void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
+  SignalWatch signals;
+  Stopwatch status, silence, overdue;
+  bool heard = false;
+  hooks.publish_status();
+  spdlog::info("listening");
+  while (!hooks.done() || setup.stay) {
+    if (signals.stopRequested()) {
+      hooks.finish("stopped by a signal");
+      break;
+    }
+    if (bus.dispatch(kPoll_ms)) {
+      heard = true;
+      silence.restart();
+    }
+    if (!hooks.overdue()) overdue.restart();
+    if (overdue.elapsedSeconds() > kEndOverdue_s)
+      hooks.finish("the end of the stream did not arrive within 30 s");
+    if (heard && setup.end_after_silence_s > 0 && silence.elapsedSeconds() > setup.end_after_silence_s)
+      hooks.finish("no message for " + std::to_string(silence.elapsedUs() / 1'000'000) + " s");
+    if (status.elapsedSeconds() < 1.0) continue;
+    hooks.publish_status();
+    status.restart();
+  }
+  hooks.publish_status();
+}
+
+}  // namespace sgraphs

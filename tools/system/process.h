@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "common/bus/bus.h"
+#include "tools/system/system_config.h"
+
+namespace sgraphs {
+
+// What a stage's process is started with.
+struct ProcessSetup {
+  std::string lcm_url;
+  SystemConfig config;
+  std::string odometry;            // override of SESSION's mode; empty: none
+  std::string output_dir;          // empty: nothing is written
+  bool stay = false;               // goes on publishing STATUS when done
+  double end_after_silence_s = 0;  // 0: silence is a state, not an end
+};
+
+struct ProcessText {
+  std::string name, purpose, example;
+  bool writes_output = false;
+};
+
+// Reads the command line and runs `body`; errors become one line on stderr and the contract's exit code.
+int runProcess(const ProcessText& text, int argc, char** argv,
+               const std::function<int(const ProcessSetup&)>& body);
+
+// What the loop needs of a node.
+struct LoopHooks {
+  std::function<bool()> done;
+  std::function<void()> publish_status;                  // once a second
+  std::function<void(const std::string&)> finish;        // ends the stream for this reason
+  std::function<bool()> overdue = [] { return false; };  // the end is announced; it must follow within 30 s
+};
+
+// Dispatches until the node is done (with `stay`: until SIGINT or SIGTERM, which always stop it cleanly).
+// Wall time decides only that nothing comes any more, and then the run is not reproducible.
+void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks);
+
+}  // namespace sgraphs

@@ -1,0 +1,118 @@
+#include "tools/system/replay.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/base/sha256.h"
+#include "tools/system/run_record.h"
+
+namespace sgraphs {
+
+Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
+  if (!options_.odometry.empty()) parseOdometryMode(options_.odometry);
+  odometry_.emplace(bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
+  backend_.emplace(bus_, makeBackendCore(options_.config));
+  inspect();
+}
+
+// One pass over the log before the run: it must be one of ours, and a recorded schedule must be known before
+// the rounds that it governs.
+void Replay::inspect() {
+  LogReader reader(options_.log);
+  std::vector<LogEvent> schedules;
+  bool has_session = false;
+  int32_t schema = -1;
+  std::string writer;
+  while (std::optional<LogEvent> event = reader.next()) {
+    session_t session{};
+    if (event->channel == channels::kRoundSchedule.name)
+      schedules.push_back(std::move(*event));
+    else if (!has_session && event->channel == channels::kSession.name && decode(event->bytes, session)) {
+      schema = session.schema;
+      writer = session.writer;
+      has_session = fromMessage(session).has_value();
+      if (has_session) feed(*event);
+    }
+  }
+  if (schema >= 0 && schema != kMessageSchema)
+    throw Error("log '" + options_.log + "' was written by '" + writer + "' with message schema " +
+                std::to_string(schema) + ", this version reads schema " + std::to_string(kMessageSchema) +
+                ": replay it with the version that wrote it, or convert the recording again");
+  if (!has_session)
+    throw Error("log '" + options_.log +
+                "' holds no SESSION: it is no recording of this program; make one with " +
+                "`sgraphs convert` or `sgraphs simulate`");
+  for (const LogEvent& event : schedules) feed(event);
+  input_digest_ = sha256OfFile(options_.log);
+}
+
+void Replay::feed(const LogEvent& event) {
+  bus_.publish(event.channel, event.bytes);
+  bus_.dispatch(0);
+}
+
+void Replay::run() {
+  const Stopwatch watch;
+  LogReader reader(options_.log);
+  bool session_fed = false;
+  while (std::optional<LogEvent> event = reader.next()) {
+    const channels::Row* row = channels::find(event->channel.c_str());
+    if (!row || !row->raw || event->channel == channels::kRoundSchedule.name) continue;
+    // inspect() has fed the first SESSION already.
+    session_t session{};
+    if (!session_fed && event->channel == channels::kSession.name && decode(event->bytes, session) &&
+        fromMessage(session)) {
+      session_fed = true;
+      continue;
+    }
+    feed(*event);
+    if (options_.on_progress)
+      options_.on_progress({static_cast<double>(reader.position()) / static_cast<double>(reader.fileBytes()),
+                            odometry_->duration().seconds(), watch.elapsedSeconds()});
+  }
+  if (reader.truncated())
+    warnings_.push_back("log '" + options_.log +
+                        "' ends in the middle of an event: what stands before it counts");
+  if (reader.skippedBytes() > 0)
+    warnings_.push_back(std::to_string(reader.skippedBytes()) + " bytes of log '" + options_.log +
+                        "' belong to no event and were skipped");
+  if (!odometry_->done()) endWithoutStreamEnd();
+  wall_s_ = watch.elapsedSeconds();
+  requireScans();
+  for (const auto& [kind, n] : odometry_->oddities()) warnings_.push_back(std::to_string(n) + " " + kind);
+  if (const std::string refused = describeRefused(*counts_); !refused.empty())
+    warnings_.push_back("refused by the VLP-16 decoder: " + refused);
+}
+
+void Replay::endWithoutStreamEnd() {
+  warnings_.push_back("log '" + options_.log + "' has no STREAM_END: the last complete scan counts");
+  // The same bytes give the same result: nothing here is a reason against it.
+  odometry_->finish("");
+  bus_.dispatch(0);
+}
+
+void Replay::requireScans() const {
+  if (backend_->rounds() > 0) return;
+  std::string why = describeRefused(*counts_);
+  for (const auto& [kind, n] : odometry_->oddities())
+    why += (why.empty() ? "" : "; ") + std::to_string(n) + " " + kind;
+  if (why.empty()) why = "no revolution of VELODYNE_PACKETS or sweep of LIDAR_POINTS is complete";
+  throw Error("log '" + options_.log + "' gave no keyframe (" + why +
+              "): check the recording with `sgraphs log info`");
+}
+
+RunRecord Replay::record() const {
+  RunRecord record = recordOf(*backend_, options_.config);
+  record.input_digest = input_digest_;
+  record.duration_s = odometry_->duration().seconds();
+  record.wall_s = wall_s_;
+  record.realtime_factor = wall_s_ > 0 ? record.duration_s / wall_s_ : 0;
+  record.stages["decode"] = timingOf(odometry_->decodeLatency());
+  record.stages["odometry"] = timingOf(odometry_->stepLatency());
+  addGaps(record, odometry_->gate());
+  if (counts_->lost_packets > 0) record.gaps["lidar_packets"] = counts_->lost_packets;
+  return record;
+}
+
+}  // namespace sgraphs

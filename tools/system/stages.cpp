@@ -1,0 +1,45 @@
+#include "tools/system/stages.h"
+
+#include <utility>
+
+#include "backend/backend.h"
+#include "perception/odometry/odometry.h"
+
+namespace sgraphs {
+
+OdometryParts makeOdometryParts(const SystemConfig& config, std::shared_ptr<Vlp16Counts> counts) {
+  OdometryParts parts;
+  parts.make_decoder = [counts] {
+    auto decoder = std::make_shared<RevolutionAssembler>();
+    return [decoder, counts](const VelodynePacket& packet) {
+      std::optional<LidarScan> scan = decoder->step(packet.time, packet.bytes);
+      if (counts) *counts = decoder->counts();
+      return scan;
+    };
+  };
+  parts.make_step = [config](OdometryMode mode, const SE3& T_body_lidar) {
+    auto odometry = std::make_shared<Odometry>(config.odometry, mode, T_body_lidar);
+    return [odometry](const LidarScan& scan, std::span<const BodyOdometry> samples) {
+      return odometry->step(scan, samples);
+    };
+  };
+  return parts;
+}
+
+BackendCore makeBackendCore(const SystemConfig& config) {
+  auto backend = std::make_shared<Backend>(config.backend);
+  return {[backend](RoundInput input) { return backend->step(std::move(input)); },
+          [backend]() -> const SituationalGraph& { return backend->graph(); },
+          [backend] { return backend->factorStatistics(); }};
+}
+
+std::string describeRefused(const Vlp16Counts& counts) {
+  std::string text;
+  for (int fault = 1; fault < kNumPacketFaults; ++fault)
+    if (const int64_t n = counts.rejected[static_cast<size_t>(fault)]; n > 0)
+      text += (text.empty() ? "" : "; ") + std::to_string(n) +
+              " packet(s): " + toString(static_cast<PacketFault>(fault));
+  return text;
+}
+
+}  // namespace sgraphs

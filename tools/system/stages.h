@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "backend/backend_node.h"
+#include "drivers/velodyne/vlp16_decoder.h"
+#include "perception/odometry/odometry_node.h"
+#include "tools/system/system_config.h"
+
+namespace sgraphs {
+
+// The real cores for the nodes. `counts` (optional) receives what the VLP-16 decoder counted.
+OdometryParts makeOdometryParts(const SystemConfig& config, std::shared_ptr<Vlp16Counts> counts = nullptr);
+BackendCore makeBackendCore(const SystemConfig& config);
+
+// "3 packets: wrong block flag; …"; empty if none was refused.
+std::string describeRefused(const Vlp16Counts& counts);
+
+}  // namespace sgraphs

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "backend/backend_config.h"
+#include "common/config/config_io.h"
+#include "perception/odometry/odometry_config.h"
+
+namespace sgraphs {
+
+// Configuration of the whole system: config/sgraphs.yaml holds every key with its default.
+struct SystemConfig {
+  OdometryConfig odometry;
+  BackendConfig backend;
+
+  void visit(ConfigVisitor& v) {
+    v.section("odometry", odometry, "Scans to poses and keyframes");
+    v.section("backend", backend, "Observations to one optimised graph");
+  }
+};
+
+// Identity of a configuration: all keys and values but the number of threads, which changes no result.
+inline std::string digestOf(SystemConfig config) {
+  config.odometry.threads = OdometryConfig{}.threads;
+  return configDigest(visitOf(config));
+}
+
+}  // namespace sgraphs
