@@ -1,0 +1,232 @@
+// Every residual of the graph is listed once in kResiduals; what must hold for all of them is tested for
+// each.
+#include <ceres/gradient_checker.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "backend/factors/pose_manifold.h"
+#include "backend/factors/relative_pose_cost.h"
+#include "backend/factors/unit_vector_manifold.h"
+#include "backend/factors/up_cost.h"
+
+namespace sgraphs {
+namespace {
+
+enum class Block { kPose, kUnitVector };
+
+using States = std::vector<Eigen::VectorXd>;
+
+Eigen::VectorXd gaussian(int size, double sigma, std::mt19937& random) {
+  std::normal_distribution<double> normal(0.0, sigma);
+  Eigen::VectorXd v(size);
+  for (int i = 0; i < size; ++i) v(i) = normal(random);
+  return v;
+}
+
+Eigen::VectorXd randomPose(std::mt19937& random) {
+  Eigen::VectorXd x = gaussian(7, 3.0, random);
+  x.tail<4>().normalize();
+  return x;
+}
+
+Eigen::Vector3d randomDirection(std::mt19937& random) {
+  return gaussian(3, 1.0, random).normalized();
+}
+
+Matrix6d randomCovariance(std::mt19937& random) {
+  const Eigen::Map<const Matrix6d> A(gaussian(36, 0.1, random).eval().data());
+  return A * A.transpose() + 0.01 * Matrix6d::Identity();
+}
+
+struct Residual {
+  std::string name;
+  std::vector<Block> blocks;
+  std::function<States(std::mt19937&)> sampleStates;
+  // The cost whose measurement is exact at `truth`, its standard deviations scaled by `sigma_scale`.
+  std::function<std::unique_ptr<ceres::CostFunction>(const States& truth, double sigma_scale)> create;
+  double
+      perturbation;  // of the states about the truth, so that the error stays where the residual is regular
+};
+
+std::vector<Residual> residuals() {
+  std::vector<Residual> all;
+  all.push_back({"RelativePose",
+                 {Block::kPose, Block::kPose},
+                 [](std::mt19937& random) {
+                   return States{randomPose(random), randomPose(random)};
+                 },
+                 [](const States& x, double scale) {
+                   std::mt19937 random(11);
+                   const SE3 Z = PoseManifold::load(x[0].data()).inverse() * PoseManifold::load(x[1].data());
+                   return RelativePoseCost::Create(Z, scale * scale * randomCovariance(random));
+                 },
+                 0.6});
+  all.push_back({"Up",
+                 {Block::kPose, Block::kUnitVector},
+                 [](std::mt19937& random) {
+                   return States{randomPose(random), randomDirection(random)};
+                 },
+                 [](const States& x, double scale) {
+                   const Eigen::Vector3d up = x[1];
+                   const Eigen::Vector3d up_body = PoseManifold::load(x[0].data()).rotation.conjugate() * up;
+                   return UpCost::Create(up_body.normalized(), 0.02 * scale);
+                 },
+                 0.5});
+  return all;
+}
+
+class CostTest : public testing::TestWithParam<Residual> {
+ protected:
+  const ceres::Manifold& manifold(size_t block) const {
+    if (GetParam().blocks[block] == Block::kPose) return pose_;
+    return unit_vector_;
+  }
+
+  States perturbed(const States& x, std::mt19937& random) const {
+    States y = x;
+    for (size_t i = 0; i < x.size(); ++i) {
+      const Eigen::VectorXd delta = gaussian(manifold(i).TangentSize(), GetParam().perturbation, random);
+      manifold(i).Plus(x[i].data(), delta.data(), y[i].data());
+    }
+    return y;
+  }
+
+  static Eigen::VectorXd evaluate(const ceres::CostFunction& cost, const States& x) {
+    std::vector<const double*> blocks;
+    for (const Eigen::VectorXd& block : x) blocks.push_back(block.data());
+    Eigen::VectorXd r(cost.num_residuals());
+    EXPECT_TRUE(cost.Evaluate(blocks.data(), r.data(), nullptr));
+    return r;
+  }
+
+  // The same states seen from another map frame.
+  States inOtherMap(const States& x, const SE3& T_other_map) const {
+    States y = x;
+    for (size_t i = 0; i < x.size(); ++i) {
+      if (GetParam().blocks[i] == Block::kPose)
+        PoseManifold::store(T_other_map * PoseManifold::load(x[i].data()), y[i].data());
+      else
+        y[i] = T_other_map.rotation * Eigen::Vector3d(x[i]);
+    }
+    return y;
+  }
+
+  PoseManifold pose_;
+  UnitVectorManifold unit_vector_;
+};
+
+TEST_P(CostTest, ZeroAtTruth) {
+  std::mt19937 random(21);
+  for (int trial = 0; trial < 5; ++trial) {
+    const States truth = GetParam().sampleStates(random);
+    EXPECT_LT(evaluate(*GetParam().create(truth, 1.0), truth).norm(), 1e-9);
+  }
+}
+
+TEST_P(CostTest, AnalyticJacobianMatchesNumericAtPerturbedStates) {
+  std::mt19937 random(22);
+  std::vector<const ceres::Manifold*> manifolds;
+  for (size_t i = 0; i < GetParam().blocks.size(); ++i) manifolds.push_back(&manifold(i));
+  ceres::NumericDiffOptions options;
+  options.relative_step_size = 1e-4;
+  for (int trial = 0; trial < 8; ++trial) {
+    const States truth = GetParam().sampleStates(random);
+    const std::unique_ptr<ceres::CostFunction> cost = GetParam().create(truth, 1.0);
+    const States x = perturbed(truth, random);
+    ASSERT_GT(evaluate(*cost, x).norm(), 0.1) << "the state is trivial";
+    std::vector<const double*> blocks;
+    for (const Eigen::VectorXd& block : x) blocks.push_back(block.data());
+    const ceres::GradientChecker checker(cost.get(), &manifolds, options);
+    ceres::GradientChecker::ProbeResults results;
+    EXPECT_TRUE(checker.Probe(blocks.data(), 1e-6, &results)) << results.error_log;
+  }
+}
+
+TEST_P(CostTest, DoesNotChangeWithTheMapFrame) {
+  std::mt19937 random(23);
+  for (int trial = 0; trial < 5; ++trial) {
+    const States truth = GetParam().sampleStates(random);
+    const std::unique_ptr<ceres::CostFunction> cost = GetParam().create(truth, 1.0);
+    const States x = perturbed(truth, random);
+    const SE3 T_other_map = PoseManifold::load(randomPose(random).eval().data());
+    const Eigen::VectorXd r = evaluate(*cost, x);
+    EXPECT_LT((evaluate(*cost, inOtherMap(x, T_other_map)) - r).norm(), 1e-9 * (1.0 + r.norm()));
+  }
+}
+
+TEST_P(CostTest, HalfTheSigmaIsTwiceTheResidual) {
+  std::mt19937 random(24);
+  const States truth = GetParam().sampleStates(random);
+  const States x = perturbed(truth, random);
+  const Eigen::VectorXd r = evaluate(*GetParam().create(truth, 1.0), x);
+  EXPECT_LT((evaluate(*GetParam().create(truth, 0.5), x) - 2.0 * r).norm(), 1e-9 * r.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Residuals, CostTest, testing::ValuesIn(residuals()),
+                         [](const auto& param_info) { return param_info.param.name; });
+
+std::vector<double> stored(const SE3& T) {
+  std::vector<double> x(7);
+  PoseManifold::store(T, x.data());
+  return x;
+}
+
+// 3 cm at sigma 1 cm and 2 mrad at sigma 1 mrad: chi2 is 9 + 4.
+TEST(RelativePoseCostTest, ResidualIsInStandardDeviations) {
+  Vector6d sigma;
+  sigma << 0.01, 0.01, 0.01, 0.001, 0.001, 0.001;
+  const auto cost = RelativePoseCost::Create(SE3(), sigma.cwiseAbs2().asDiagonal());
+  const std::vector<double> a = stored(SE3());
+  const std::vector<double> b = stored({so3Exp({0, 0, 0.002}), {0.03, 0, 0}});
+  const std::array<const double*, 2> x{a.data(), b.data()};
+  Vector6d r;
+  ASSERT_TRUE(cost->Evaluate(x.data(), r.data(), nullptr));
+  EXPECT_NEAR(r.squaredNorm(), 13.0, 1e-3);
+  EXPECT_NEAR(r(5), 2.0, 1e-9);
+}
+
+TEST(RelativePoseCostTest, RefusesACovarianceThatIsNotPositiveDefinite) {
+  Matrix6d covariance = Matrix6d::Identity();
+  covariance(4, 4) = -1.0;
+  EXPECT_THROW(RelativePoseCost::Create(SE3(), covariance), std::logic_error);
+  covariance(4, 4) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(RelativePoseCost::Create(SE3(), covariance), std::logic_error);
+}
+
+TEST(UpCostTest, TiltOfOneSigmaIsOneAndHeadingIsFree) {
+  const auto cost = UpCost::Create(Eigen::Vector3d::UnitZ(), 0.01);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  for (const double heading : {0.0, 1.0, 2.5}) {
+    const std::vector<double> T =
+        stored({so3Exp({0, 0, heading}) * so3Exp({0.01, 0, 0}), Eigen::Vector3d(4, 5, 6)});
+    const std::array<const double*, 2> x{T.data(), up.data()};
+    Eigen::Vector2d r;
+    ASSERT_TRUE(cost->Evaluate(x.data(), r.data(), nullptr));
+    EXPECT_NEAR(r.norm(), 1.0, 1e-4);
+  }
+}
+
+TEST(UpCostTest, GrowsUpToNinetyDegrees) {
+  const auto cost = UpCost::Create(Eigen::Vector3d::UnitZ(), 1.0);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double last = -1.0;
+  for (int degrees = 0; degrees <= 90; degrees += 5) {
+    const std::vector<double> T = stored({so3Exp({0, degrees * M_PI / 180.0, 0}), Eigen::Vector3d::Zero()});
+    const std::array<const double*, 2> x{T.data(), up.data()};
+    Eigen::Vector2d r;
+    ASSERT_TRUE(cost->Evaluate(x.data(), r.data(), nullptr));
+    EXPECT_GT(r.norm(), last);
+    last = r.norm();
+  }
+  EXPECT_NEAR(last, 1.0, 1e-9);
+}
+
+TEST(UpCostTest, RefusesWhatIsNoDirectionOrHasNoSigma) {
+  EXPECT_THROW(UpCost::Create(Eigen::Vector3d::Zero(), 0.01), std::logic_error);
+  EXPECT_THROW(UpCost::Create(Eigen::Vector3d::UnitZ(), 0.0), std::logic_error);
+}
+
+}  // namespace
+}  // namespace sgraphs
