@@ -83,6 +83,8 @@ std::vector<int32_t> prefilter(const LidarScan& scan, const SE3& T_body_lidar,
   for (size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3f& p = scan.points[i].position_lidar;
     const float r2 = p.squaredNorm();
+    // A ring beyond the scan's own has no place in its image.
+    if (scan.num_rings > 0 && scan.points[i].ring >= scan.num_rings) continue;
     // Written so that NaN fails.
     if (!(r2 >= min2 && r2 <= max2) || insideBody(R * p + t, config)) continue;
     kept.push_back(static_cast<int32_t>(i));
