@@ -1,8 +1,38 @@
 #include "backend/output/summary_json.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace sgraphs {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return -1;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// How well the scans found the local map; medians are -1 where no scan was registered (encoder mode).
+nlohmann::ordered_json registrationJson(const std::vector<OdometryEstimate>& scans) {
+  std::vector<double> share, rms;
+  int64_t degenerate = 0, extrapolated = 0;
+  for (const OdometryEstimate& scan : scans) {
+    degenerate += scan.num_degenerate > 0;
+    extrapolated += scan.extrapolated;
+    if (scan.inlier_share < 0) continue;
+    share.push_back(scan.inlier_share);
+    rms.push_back(scan.residual_rms_m);
+  }
+  return {{"scans", share.size()},
+          {"inlier_share_p50", median(share)},
+          {"residual_rms_m_p50", median(rms)},
+          {"degenerate_scans", degenerate},
+          {"extrapolated_scans", extrapolated}};
+}
+
+}  // namespace
 
 std::string summaryJson(const RunRecord& record) {
   using Json = nlohmann::ordered_json;
@@ -20,6 +50,7 @@ std::string summaryJson(const RunRecord& record) {
   json["stages"] = Json::object();
   for (const auto& [name, t] : record.stages)
     json["stages"][name] = {{"p50_ms", t.p50_ms}, {"p99_ms", t.p99_ms}, {"count", t.count}};
+  json["registration"] = registrationJson(record.scans);
   json["factors"] = Json::object();
   for (const auto& [kind, f] : record.factors)
     json["factors"][kind] = {{"count", f.count}, {"dof", f.dof}, {"chi2", f.chi2}};

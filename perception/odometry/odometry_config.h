@@ -20,7 +20,7 @@ struct PrefilterConfig {
 struct SurfelConfig {
   int column_stride = 10;
   double patch_radius_m = 0.12;
-  int max_half_columns = 8;
+  int max_half_columns = 20;
   int min_points = 8;
   double max_thickness_m = 0.03;
   double max_normal_sigma_rad = 0.15;
@@ -33,7 +33,7 @@ struct RegistrationConfig {
   double cell_m = 0.5;
   double map_radius_m = 60.0;
   double gate_m = 0.30;
-  double max_normal_angle_rad = 0.35;
+  double max_normal_angle_rad = 0.7;
   double sigma_floor_m = 0.006;
   double robust_width = 3.0;
   int max_iterations = 12;
@@ -54,8 +54,8 @@ struct RegistrationConfig {
 struct LegsConfig {
   double sigma_m = 0.002;
   double sigma_per_m = 0.05;
-  double sigma_rad = 0.001;
-  double sigma_rad_per_rad = 0.05;
+  double sigma_rad = 0.0005;
+  double sigma_rad_per_rad = 0.03;
   double up_sigma_rad = 0.005;
 
   void visit(ConfigVisitor& v);
@@ -72,7 +72,7 @@ struct KeyframeConfig {
 
 // Turns the information of registrations into calibrated covariances.
 struct CovarianceConfig {
-  double scale = 2.5;
+  double scale = 3.0;
   double floor_m = 0.001;
   double floor_rad = 0.0008;
   double neighbour_scale = 4.0;
