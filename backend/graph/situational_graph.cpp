@@ -1,5 +1,6 @@
 #include "backend/graph/situational_graph.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -13,8 +14,6 @@ namespace {
 // half a million numbers, and the digest is taken every round.
 class CanonicalBytes {
  public:
-  CanonicalBytes() { buffer_.reserve(kBlock + 64); }
-
   void add(int64_t value) { append(&value, sizeof value); }
   void add(double value) { append(&value, sizeof value); }
   void add(const SE3& T) {
@@ -27,24 +26,24 @@ class CanonicalBytes {
       for (Eigen::Index c = 0; c < values.cols(); ++c) add(values(r, c));
   }
   std::string hex() {
-    sha_.addBytes(buffer_);
+    flush();
     return sha_.hex();
   }
 
  private:
-  static constexpr size_t kBlock = 1 << 16;
-
   void append(const void* data, size_t size) {
-    const size_t at = buffer_.size();
-    buffer_.resize(at + size);
-    std::memcpy(buffer_.data() + at, data, size);
-    if (buffer_.size() < kBlock) return;
-    sha_.addBytes(buffer_);
-    buffer_.clear();
+    if (used_ + size > buffer_.size()) flush();
+    std::memcpy(buffer_.data() + used_, data, size);
+    used_ += size;
+  }
+  void flush() {
+    sha_.addBytes({buffer_.data(), used_});
+    used_ = 0;
   }
 
   Sha256 sha_;
-  std::vector<uint8_t> buffer_;
+  std::array<uint8_t, 1 << 14> buffer_{};
+  size_t used_ = 0;
 };
 
 void addCovariance(const Matrix6d& covariance, CanonicalBytes& bytes) {

@@ -23,6 +23,7 @@ struct Ray {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
   bool ends_here = false;  // the return lies in the band
+  uint8_t scan = 0;        // of its keyframe: rays of one scan share a viewpoint
 };
 
 // The part of the ray inside the band, seen from above.
@@ -40,7 +41,7 @@ std::optional<Ray> clipToBand(const StoreyHeight& height, const Eigen::Vector3d&
   if (begin >= end) return std::nullopt;
   const Eigen::Vector2d direction = (point - viewpoint).head<2>();
   const Eigen::Vector2d origin = viewpoint.head<2>();
-  return Ray{origin + begin * direction, origin + end * direction, end == 1};
+  return Ray{origin + begin * direction, origin + end * direction, end == 1, 0};
 }
 
 std::vector<Ray> raysOf(const KeyframeNode& node, const StoreyHeight& height) {
@@ -53,7 +54,10 @@ std::vector<Ray> raysOf(const KeyframeNode& node, const StoreyHeight& height) {
   for (const KeyframePoint& point : node.keyframe->points) {
     if (point.scan >= viewpoints.size()) continue;
     const Eigen::Vector3d p = rotation * point.position_body.cast<double>() + node.T_map_body.translation;
-    if (const auto ray = clipToBand(height, viewpoints[point.scan], p)) rays.push_back(*ray);
+    if (const auto ray = clipToBand(height, viewpoints[point.scan], p)) {
+      rays.push_back(*ray);
+      rays.back().scan = point.scan;
+    }
   }
   return rays;
 }
@@ -73,6 +77,7 @@ class GridBuilder {
     log_odds_.assign(cells, 0);
     seen_.assign(cells, 0);
     touched_.assign(cells, 0);
+    cleared_.assign(cells, 0);
   }
 
   void add(const std::vector<Ray>& rays) {
@@ -80,7 +85,8 @@ class GridBuilder {
     ++keyframe_;
     for (const Ray& ray : rays)
       if (ray.ends_here) update(cellOf(ray.to), kHit);
-    for (const Ray& ray : rays) clear(ray);
+    for (const Ray& ray : rays)
+      if (isFirst(ray)) clear(ray);
   }
 
   OccupancyGrid finish() {
@@ -103,6 +109,16 @@ class GridBuilder {
     touched_[i] = keyframe_;
     seen_[i] = 1;
     log_odds_[i] = std::clamp(log_odds_[i] + change, kMin, kMax);
+  }
+
+  // Points above one another on a wall: their rays cross the same cells, one of them is enough.
+  bool isFirst(const Ray& ray) {
+    const Eigen::Vector2i cell = cellOf(ray.to);
+    int64_t& last = cleared_[static_cast<size_t>(cell.y()) * grid_.width + cell.x()];
+    const int64_t now = (int64_t{keyframe_} * 256 + ray.scan) * 2 + ray.ends_here;
+    if (last == now) return false;
+    last = now;
+    return true;
   }
 
   // Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing": every cell between the ends,
@@ -132,7 +148,8 @@ class GridBuilder {
   OccupancyGrid grid_;
   std::vector<float> log_odds_;
   std::vector<uint8_t> seen_;
-  std::vector<int32_t> touched_;
+  std::vector<int32_t> touched_;  // by which keyframe last
+  std::vector<int64_t> cleared_;  // up to here, by which scan last
   int32_t keyframe_ = 0;
 };
 

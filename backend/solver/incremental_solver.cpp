@@ -67,6 +67,7 @@ class IncrementalSolver::Impl {
   Report solve(bool whole) {
     Report report;
     if (settled_) return report;
+    forgetMarginals();
     whole = whole || unfinished_ || static_cast<int>(graph.states.size()) <= options_.small_graph;
     if (!whole && !seeds_.empty()) whole = !solveLocal(report);
     seeds_.clear();
@@ -77,8 +78,16 @@ class IncrementalSolver::Impl {
   void markChanged(const std::vector<int>& states) {
     seeds_.insert(seeds_.end(), states.begin(), states.end());
     settled_ = false;
+    forgetMarginals();
   }
   bool settled() const { return settled_; }
+
+  // Factorised once for all covariances asked for between two changes.
+  const Marginals& marginals() {
+    if (!marginals_) marginals_.emplace(graph);
+    return *marginals_;
+  }
+  void forgetMarginals() { marginals_.reset(); }
 
   StateGraph graph;
 
@@ -89,13 +98,16 @@ class IncrementalSolver::Impl {
     region.grow(seeds_, kFirstHops);
     for (int hops = 2 * kFirstHops;; hops *= 2) {
       if (static_cast<int>(region.members().size()) > options_.max_region) return false;
-      const RegionOutcome outcome = solveRegion(graph, region.members(), options_.max_iterations);
+      const RegionOutcome outcome =
+          solveRegion(graph, region.members(), options_.max_iterations, options_.settled_step_local);
       report.iterations += outcome.iterations;
       if (!outcome.converged) return false;
+      const double leverage = leverageOver(region.members().size());
       StepSize unresolved;
       std::vector<int> moving;
       for (const int state : region.rim()) {
-        const StepSize step = graph.newtonStep(state);
+        const StepSize alone = graph.newtonStep(state);
+        const StepSize step{leverage * alone.m, leverage * alone.rad};
         unresolved = {std::max(unresolved.m, step.m), std::max(unresolved.rad, step.rad)};
         if (step.m > options_.grow_step_m || step.rad > options_.grow_step_rad) moving.push_back(state);
       }
@@ -109,20 +121,37 @@ class IncrementalSolver::Impl {
     }
   }
 
+  double leverageOver(size_t num_free) const {
+    const auto held = static_cast<double>(graph.states.size() - num_free);
+    return std::min(held, static_cast<double>(options_.max_leverage));
+  }
+
+  // A shared state takes many others along when it moves: its step is the gradient times its covariance, as
+  // of the last whole-graph solve.
   bool sharedStatesRest() const {
-    for (size_t i = 0; i < graph.states.size(); ++i) {
-      if (!graph.states[i].shared || graph.states[i].factors.empty()) continue;
-      const StepSize step = graph.newtonStep(static_cast<int>(i));
-      if (step.m > options_.drift_m || step.rad > options_.drift_rad) return false;
+    for (const auto& [state, covariance] : shared_covariances_) {
+      const StepSize step = graph.sizeOf(state, covariance * graph.normalEquations(state).g);
+      if (step.m > options_.drift_m || step.rad > options_.shared_drift_rad) return false;
     }
     return true;
+  }
+
+  void rememberSharedCovariances() {
+    shared_covariances_.clear();
+    for (size_t i = 0; i < graph.states.size(); ++i) {
+      const auto state = static_cast<int>(i);
+      if (!graph.states[i].shared || graph.states[i].factors.empty()) continue;
+      if (const auto covariance = marginals().covariance(state))
+        shared_covariances_.emplace_back(state, *covariance);
+    }
   }
 
   void solveWhole(Report& report) {
     std::vector<int> free;
     for (size_t i = 0; i < graph.states.size(); ++i)
       if (!graph.states[i].held && !graph.states[i].factors.empty()) free.push_back(static_cast<int>(i));
-    const RegionOutcome outcome = solveRegion(graph, free, options_.max_iterations);
+    const RegionOutcome outcome =
+        solveRegion(graph, free, options_.max_iterations, options_.settled_step_whole);
     report.whole = true;
     report.converged = outcome.converged;
     report.iterations += outcome.iterations;
@@ -130,12 +159,15 @@ class IncrementalSolver::Impl {
     unfinished_ = !outcome.converged;
     settled_ = outcome.converged;
     drift_ = {};
+    if (settled_) rememberSharedCovariances();
   }
 
   SolverOptions options_;
   std::vector<int> seeds_;   // states of the factors added since the last solve
   bool unfinished_ = false;  // the last whole-graph solve ran out of iterations
   bool settled_ = true;
+  std::optional<Marginals> marginals_;
+  std::vector<std::pair<int, Eigen::MatrixXd>> shared_covariances_;
   StepSize drift_;  // left unresolved since the last whole-graph solve
 };
 
@@ -175,6 +207,7 @@ SE3 IncrementalSolver::pose(StateId state) const {
 }
 
 void IncrementalSolver::setPose(StateId state, const SE3& T) {
+  impl_->forgetMarginals();
   PoseManifold::store(T, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
 }
 
@@ -183,6 +216,7 @@ Eigen::Vector3d IncrementalSolver::unitVector(StateId state) const {
 }
 
 void IncrementalSolver::setUnitVector(StateId state, const Eigen::Vector3d& n) {
+  impl_->forgetMarginals();
   std::copy_n(n.data(), 3, impl_->graph.states.at(static_cast<size_t>(state)).x.begin());
 }
 
@@ -203,7 +237,7 @@ int IncrementalSolver::numResiduals(FactorId factor) const {
 }
 
 std::optional<Matrix6d> IncrementalSolver::covariance(StateId pose) const {
-  const std::optional<Eigen::MatrixXd> covariance = marginalCovariance(impl_->graph, pose);
+  const std::optional<Eigen::MatrixXd> covariance = impl_->marginals().covariance(pose);
   return covariance ? std::optional<Matrix6d>(*covariance) : std::nullopt;
 }
 

@@ -16,14 +16,22 @@ namespace sgraphs {
 struct SolverOptions {
   int max_iterations = 10;  // of one solve; the only budget there is (a time budget would not be repeatable)
 
-  // A neighbourhood grows while a state at its rim would still move by more than this.
+  // What the held states at the rim of a neighbourhood would move alone is a fraction of what the chain
+  // behind them would move together: in a circle of n equal links, one part in 2 n. So their steps are
+  // multiplied by the number of held states, at most by this.
+  int max_leverage = 500;
+  // A neighbourhood grows while that product is above this.
   double grow_step_m = 2e-5;
-  double grow_step_rad = 4e-6;
-  // What rounds left unresolved at their rims since the last whole-graph solve, summed, and what shared
-  // states
+  double grow_step_rad = 1e-6;
+  // The products that rounds left unresolved since the last whole-graph solve, summed, and what shared states
   // (`up`) would move: more than this calls for a whole-graph solve.
-  double drift_m = 5e-4;
-  double drift_rad = 5e-5;
+  double drift_m = 1e-3;
+  double drift_rad = 3e-5;
+  double shared_drift_rad = 1e-5;  // 2 mm at 200 m
+
+  // Solves are done when the root mean square of their steps [m, rad] is below this.
+  double settled_step_local = 1e-7;
+  double settled_step_whole = 1e-5;
 
   int max_region = 400;  // states; a larger neighbourhood is not local any more
   int small_graph = 30;  // states; smaller graphs are solved whole, which costs nothing

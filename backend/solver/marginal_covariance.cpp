@@ -1,23 +1,7 @@
 #include "backend/solver/marginal_covariance.h"
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-
 namespace sgraphs {
 namespace {
-
-// First column of each state in J^T J; -1: held, or without a factor.
-std::vector<int> columnsOf(const StateGraph& graph, int& num_columns) {
-  std::vector<int> columns(graph.states.size(), -1);
-  num_columns = 0;
-  for (size_t i = 0; i < graph.states.size(); ++i) {
-    const State& state = graph.states[i];
-    if (state.held || state.factors.empty()) continue;
-    columns[i] = num_columns;
-    num_columns += graph.manifold(state.kind).TangentSize();
-  }
-  return columns;
-}
 
 // Lower triangle of J^T J.
 Eigen::SparseMatrix<double> information(const StateGraph& graph, const std::vector<int>& columns, int size) {
@@ -31,7 +15,7 @@ Eigen::SparseMatrix<double> information(const StateGraph& graph, const std::vect
         const int row = columns[static_cast<size_t>(states[a])];
         const int column = columns[static_cast<size_t>(states[b])];
         if (row < 0 || column < 0 || row < column) continue;
-        const Eigen::MatrixXd block = linear.jacobians[a].transpose() * linear.jacobians[b];
+        const SmallMatrix block = linear.jacobians[a].transpose() * linear.jacobians[b];
         for (int c = 0; c < block.cols(); ++c)
           for (int r = row == column ? c : 0; r < block.rows(); ++r)
             entries.emplace_back(row + r, column + c, block(r, c));
@@ -45,17 +29,24 @@ Eigen::SparseMatrix<double> information(const StateGraph& graph, const std::vect
 
 }  // namespace
 
-std::optional<Eigen::MatrixXd> marginalCovariance(const StateGraph& graph, int state) {
-  const int n = graph.manifold(graph.states.at(static_cast<size_t>(state)).kind).TangentSize();
-  int size = 0;
-  const std::vector<int> columns = columnsOf(graph, size);
-  const int column = columns[static_cast<size_t>(state)];
+Marginals::Marginals(const StateGraph& graph) : graph_(graph), columns_(graph.states.size(), -1) {
+  for (size_t i = 0; i < graph.states.size(); ++i) {
+    const State& state = graph.states[i];
+    if (state.held || state.factors.empty()) continue;
+    columns_[i] = size_;
+    size_ += graph.manifold(state.kind).TangentSize();
+  }
+  if (size_ > 0) cholesky_.compute(information(graph, columns_, size_));
+}
+
+std::optional<Eigen::MatrixXd> Marginals::covariance(int state) const {
+  const int n = graph_.manifold(graph_.states.at(static_cast<size_t>(state)).kind).TangentSize();
+  const int column = columns_[static_cast<size_t>(state)];
   if (column < 0) return Eigen::MatrixXd(Eigen::MatrixXd::Zero(n, n));
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(information(graph, columns, size));
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
-  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(size, n);
+  if (cholesky_.info() != Eigen::Success) return std::nullopt;
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(size_, n);
   rhs.middleRows(column, n).setIdentity();
-  const Eigen::MatrixXd block = cholesky.solve(rhs).middleRows(column, n);
+  const Eigen::MatrixXd block = cholesky_.solve(rhs).middleRows(column, n);
   return Eigen::MatrixXd(0.5 * (block + block.transpose()));
 }
 

@@ -1,13 +1,28 @@
 #pragma once
 
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <optional>
+#include <vector>
 
 #include "backend/solver/state_graph.h"
 
 namespace sgraphs {
 
-// The diagonal block of the inverse of J^T J that belongs to `state`; all states but the held ones are free.
-// None if J^T J is singular; zero for a held state.
-std::optional<Eigen::MatrixXd> marginalCovariance(const StateGraph& graph, int state);
+// J^T J of the whole graph at its present states, factorised: all states but the held ones are free.
+class Marginals {
+ public:
+  explicit Marginals(const StateGraph& graph);
+
+  // The diagonal block of the inverse that belongs to the state: its covariance. Zero for a held state, none
+  // if J^T J is singular.
+  std::optional<Eigen::MatrixXd> covariance(int state) const;
+
+ private:
+  const StateGraph& graph_;
+  std::vector<int> columns_;  // first column of each state; -1: held, or without a factor
+  int size_ = 0;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
+};
 
 }  // namespace sgraphs

@@ -10,15 +10,13 @@
 namespace sgraphs {
 namespace {
 
-// Gauss-Newton converges quadratically here: once a step is this small (root mean square over the states),
-// the next would be far below anything that matters. Ceres' own tolerances are relative to the cost and to
-// the distance from the origin, and would stop early in a large map.
-constexpr double kSettledStepRms = 1e-5;
-
+// Gauss-Newton converges quadratically here: once a step is small, the next is far smaller. Ceres' own
+// tolerances are relative to the cost and to the distance from the origin, and would stop early in a large
+// map.
 class StopWhenSettled final : public ceres::IterationCallback {
  public:
-  explicit StopWhenSettled(size_t num_free)
-      : max_step_norm_(kSettledStepRms * std::sqrt(static_cast<double>(num_free))) {}
+  StopWhenSettled(double step_rms, size_t num_free)
+      : max_step_norm_(step_rms * std::sqrt(static_cast<double>(num_free))) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     const bool settled =
         summary.iteration > 0 && summary.step_is_successful && summary.step_norm < max_step_norm_;
@@ -96,13 +94,14 @@ ceres::Solver::Options solverOptions(int max_iterations) {
 
 }  // namespace
 
-RegionOutcome solveRegion(StateGraph& graph, const std::vector<int>& free, int max_iterations) {
+RegionOutcome solveRegion(StateGraph& graph, const std::vector<int>& free, int max_iterations,
+                          double settled_step) {
   if (free.empty()) return {};
   ceres::Problem problem(problemOptions());
   fillProblem(graph, free, problem);
 
   ceres::Solver::Options options = solverOptions(max_iterations);
-  StopWhenSettled stop(free.size());
+  StopWhenSettled stop(settled_step, free.size());
   options.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

@@ -13,6 +13,8 @@ struct RegionOutcome {
 };
 
 // Minimises all factors that touch the free states (ascending ids, none held) over those states.
-RegionOutcome solveRegion(StateGraph& graph, const std::vector<int>& free, int max_iterations);
+// Done when the root mean square of the states' steps (metres and radians) is below settled_step.
+RegionOutcome solveRegion(StateGraph& graph, const std::vector<int>& free, int max_iterations,
+                          double settled_step);
 
 }  // namespace sgraphs

@@ -5,7 +5,8 @@
 
 namespace sgraphs {
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajorMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxResiduals, kMaxCoordinates>;
 
 int StateGraph::addState(StateKind kind) {
   states.emplace_back().kind = kind;
@@ -33,7 +34,7 @@ double StateGraph::chi2(int factor) const {
   const Factor& f = factors[static_cast<size_t>(factor)];
   std::vector<const double*> x;
   for (const int state : f.states) x.push_back(states[static_cast<size_t>(state)].x.data());
-  Eigen::VectorXd residual(f.cost->num_residuals());
+  SmallVector residual(f.cost->num_residuals());
   f.cost->Evaluate(x.data(), residual.data(), nullptr);
   return residual.squaredNorm();
 }
@@ -71,23 +72,30 @@ Linearised StateGraph::linearise(int factor, int only) const {
   return out;
 }
 
-StepSize StateGraph::newtonStep(int state) const {
+NormalEquations StateGraph::normalEquations(int state) const {
   const State& s = states[static_cast<size_t>(state)];
   const int n = manifold(s.kind).TangentSize();
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
+  NormalEquations sum{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   for (const int id : s.factors) {
     const Linearised f = linearise(id, state);
-    for (size_t i = 0; i < f.jacobians.size(); ++i) {
-      const Eigen::MatrixXd& J = f.jacobians[i];
+    for (const SmallMatrix& J : f.jacobians) {
       if (J.size() == 0) continue;
-      H += J.transpose() * J;
-      g += J.transpose() * f.residual;
+      sum.H += J.transpose() * J;
+      sum.g += J.transpose() * f.residual;
     }
   }
+  return sum;
+}
+
+StepSize StateGraph::newtonStep(int state) const {
+  const NormalEquations normal = normalEquations(state);
   // A direction that no factor holds has no gradient either: the pseudo-inverse leaves it alone.
-  const Eigen::VectorXd step = H.completeOrthogonalDecomposition().solve(g);
-  if (s.kind == StateKind::kPose) return {step.head<3>().norm(), step.tail<3>().norm()};
+  return sizeOf(state, normal.H.completeOrthogonalDecomposition().solve(normal.g));
+}
+
+StepSize StateGraph::sizeOf(int state, const Eigen::VectorXd& step) const {
+  if (states[static_cast<size_t>(state)].kind == StateKind::kPose)
+    return {step.head<3>().norm(), step.tail<3>().norm()};
   return {0.0, step.norm()};
 }
 

@@ -37,11 +37,23 @@ struct StepSize {
   double rad = 0;
 };
 
+// Small enough to need no heap: residuals by tangent or ambient coordinates of one state.
+constexpr int kMaxResiduals = 8;
+constexpr int kMaxCoordinates = 7;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxResiduals, 1>;
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxResiduals, kMaxCoordinates>;
+
 // A factor linearised in the tangents of its states, the robust loss applied as Ceres applies it where the
 // loss is concave: residual and Jacobians times sqrt(rho').
 struct Linearised {
-  Eigen::VectorXd residual;
-  std::vector<Eigen::MatrixXd> jacobians;  // one per state; empty where not asked for
+  SmallVector residual;
+  std::vector<SmallMatrix> jacobians;  // one per state; empty where not asked for
+};
+
+// J^T J and J^T r of one state, all others held.
+struct NormalEquations {
+  Eigen::MatrixXd H;
+  Eigen::VectorXd g;
 };
 
 // States and the factors between them: the arena all parts of the solver work on.
@@ -59,8 +71,10 @@ class StateGraph {
   double chi2(int factor) const;
   // Jacobians for the state `only`, or for all of the factor's states if it is -1.
   Linearised linearise(int factor, int only = -1) const;
+  NormalEquations normalEquations(int state) const;
   // The Gauss-Newton step of one state, all others held.
   StepSize newtonStep(int state) const;
+  StepSize sizeOf(int state, const Eigen::VectorXd& step) const;
 
  private:
   PoseManifold pose_manifold_;

@@ -33,6 +33,31 @@ std::vector<Eigen::Vector3f> readKittiBin(const std::string& path) {
   return points;
 }
 
+// PCL's reader trusts the header: a file that is no PCD, or shorter than its header says, would make it read
+// where nothing is. Returns whether the body may be read.
+bool soundPcd(const std::string& path) {
+  pcl::PCDReader reader;
+  pcl::PCLPointCloud2 header;
+  Eigen::Vector4f origin;
+  Eigen::Quaternionf orientation;
+  int version = 0, data_type = -1;
+  unsigned int body = 0;
+  if (reader.readHeader(path, header, origin, orientation, version, data_type, body) < 0) return false;
+  if (header.fields.empty() || header.point_step == 0) return false;
+  const uint64_t points = static_cast<uint64_t>(header.width) * header.height;
+  const uint64_t file_bytes = fs::file_size(path);
+  constexpr int kAscii = 0, kBinary = 1;
+  if (data_type == kBinary) return body + points * header.point_step <= file_bytes;
+  // In text, a value takes a byte at least; compressed data begin with their two sizes.
+  if (data_type == kAscii) return body + points * header.fields.size() <= file_bytes;
+  std::ifstream in(path, std::ios::binary);
+  uint32_t compressed = 0, uncompressed = 0;
+  in.seekg(body);
+  in.read(reinterpret_cast<char*>(&compressed), sizeof compressed);
+  in.read(reinterpret_cast<char*>(&uncompressed), sizeof uncompressed);
+  return in && body + 8 + uint64_t{compressed} <= file_bytes && uncompressed == points * header.point_step;
+}
+
 // Offset of a float32 or float64 coordinate within a point, and its type.
 const pcl::PCLPointField& coordinate(const pcl::PCLPointCloud2& cloud, const std::string& name,
                                      const std::string& path) {
@@ -90,7 +115,10 @@ std::vector<Eigen::Vector3f> readPoints(const std::string& path) {
   pcl::PCLPointCloud2 cloud;
   int status = -1;
   try {
-    status = extension == ".pcd" ? pcl::io::loadPCDFile(path, cloud) : pcl::io::loadPLYFile(path, cloud);
+    if (extension == ".ply")
+      status = pcl::io::loadPLYFile(path, cloud);
+    else if (soundPcd(path))
+      status = pcl::io::loadPCDFile(path, cloud);
   } catch (const std::exception&) {
     status = -1;
   }

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   cli::addSimulate(app);
   cli::addConvert(app);
   cli::addReplay(app);
+  cli::addEval(app);
   cli::addLog(app);
   cli::addReserved(app);
   try {

@@ -102,12 +102,13 @@ class PlanView {
   void drawGrid() {
     const double step = tickStep((extent_.max - extent_.min).maxCoeff(), 8);
     for (int axis = 0; axis < 2; ++axis)
-      for (double v = std::ceil(extent_.min[axis] / step) * step; v <= extent_.max[axis]; v += step) {
+      for (double i = std::ceil(extent_.min[axis] / step); i * step <= extent_.max[axis]; ++i) {
+        const double v = i * step + 0.0;  // no negative zero
         Eigen::Vector2d a = extent_.min, b = extent_.max;
         a[axis] = b[axis] = v;
         canvas_->line(a, b, kGrid, 0.08 * letter_);
         const Eigen::Vector2d shift = axis == 0 ? Eigen::Vector2d(0, -1.7) : Eigen::Vector2d(-0.7, -0.5);
-        canvas_->text(a + letter_ * shift, format("%g", std::round(v / step) * step), 0.9 * letter_, kText,
+        canvas_->text(a + letter_ * shift, format("%g", v), 0.9 * letter_, kText,
                       axis == 0 ? TextAnchor::kCenter : TextAnchor::kRight);
       }
   }
@@ -232,8 +233,8 @@ std::string mapPlot(const Evaluation& evaluation, const Truth& truth) {
   if (!evaluation.map.missing.empty()) return {};
   const auto walls = outlines(truth);
   PlanView view(truth, walls);
-  view.canvas().raster(errorRaster(evaluation.map, truth, view.extent()));
   view.walls(walls);
+  view.canvas().raster(errorRaster(evaluation.map, truth, view.extent()));
   for (const double cm : {0.0, 2.5, 5.0, 7.5})
     view.legend(format("%g cm", cm), viridis(cm / 100 / kErrorScale_m));
   view.legend("10 cm or more", viridis(1));

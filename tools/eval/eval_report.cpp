@@ -38,7 +38,7 @@ std::string mapLines(const MapResult& map) {
   if (!map.missing.empty()) return "map       not judged: " + map.missing + "\n";
   const MapError& e = map.error;
   return format(
-             "map       RMSE %.4f m, median %.4f m, max %.3f m, %zu points; completeness %.3f of %.0f m2 "
+             "map       RMSE %.4f m, median %.4f m, max %.3f m, %zu points; completeness %.4f of %.0f m2 "
              "seen: ",
              e.distance_m.rmse, e.distance_m.median, e.distance_m.max, e.distance_m.count, e.completeness,
              e.visible_area_m2) +

@@ -36,7 +36,8 @@ Eigen::Vector3d randomDirection(std::mt19937& random) {
 }
 
 Matrix6d randomCovariance(std::mt19937& random) {
-  const Eigen::Map<const Matrix6d> A(gaussian(36, 0.1, random).eval().data());
+  const Eigen::VectorXd entries = gaussian(36, 0.1, random);
+  const Eigen::Map<const Matrix6d> A(entries.data());
   return A * A.transpose() + 0.01 * Matrix6d::Identity();
 }
 
@@ -150,7 +151,8 @@ TEST_P(CostTest, DoesNotChangeWithTheMapFrame) {
     const States truth = GetParam().sampleStates(random);
     const std::unique_ptr<ceres::CostFunction> cost = GetParam().create(truth, 1.0);
     const States x = perturbed(truth, random);
-    const SE3 T_other_map = PoseManifold::load(randomPose(random).eval().data());
+    const Eigen::VectorXd other = randomPose(random);
+    const SE3 T_other_map = PoseManifold::load(other.data());
     const Eigen::VectorXd r = evaluate(*cost, x);
     EXPECT_LT((evaluate(*cost, inOtherMap(x, T_other_map)) - r).norm(), 1e-9 * (1.0 + r.norm()));
   }

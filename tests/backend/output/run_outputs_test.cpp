@@ -10,15 +10,10 @@
 #include "common/io/text_file.h"
 #include "common/io/tum.h"
 #include "tests/backend/output/synthetic_run.h"
+#include "tests/support/temp_folder.h"
 
 namespace sgraphs {
 namespace {
-
-std::string freshFolder(const std::string& name) {
-  const std::string path = testing::TempDir() + "sgraphs_run_outputs_" + name;
-  std::filesystem::remove_all(path);
-  return path;
-}
 
 std::vector<std::string> filesIn(const std::string& folder) {
   std::vector<std::string> names;
@@ -29,7 +24,8 @@ std::vector<std::string> filesIn(const std::string& folder) {
 
 TEST(RunOutputsTest, WritesEveryFileOfTheContract) {
   const auto run = test::makeSyntheticRun();
-  const std::string out = freshFolder("files") + "/nested";
+  const test::TempFolder folder;
+  const std::string out = folder / "a/nested";
   writeOutputs(run->record, out);
   EXPECT_THAT(filesIn(out),
               testing::UnorderedElementsAre("trajectory.tum", "keyframes.tum", "odometry.tum", "map.ply",
@@ -41,7 +37,8 @@ TEST(RunOutputsTest, WritesEveryFileOfTheContract) {
 }
 
 TEST(RunOutputsTest, SameGraphGivesTheSameBytes) {
-  const std::string a = freshFolder("a"), b = freshFolder("b");
+  const test::TempFolder folder;
+  const std::string a = folder / "a", b = folder / "b";
   writeOutputs(test::makeSyntheticRun()->record, a);
   writeOutputs(test::makeSyntheticRun()->record, b);
   for (const std::string& name : filesIn(a))
@@ -50,7 +47,8 @@ TEST(RunOutputsTest, SameGraphGivesTheSameBytes) {
 
 TEST(RunOutputsTest, MapPointsLieOnTheRoomAndNameTheirStorey) {
   const auto run = test::makeSyntheticRun();
-  const std::string out = freshFolder("map");
+  const test::TempFolder folder;
+  const std::string& out = folder.path();
   writeOutputs(run->record, out);
   const PointCloud map = readPlyPoints(out + "/map.ply");
   ASSERT_GT(map.points.size(), 10000u);
@@ -71,7 +69,8 @@ TEST(RunOutputsTest, SummaryCarriesTheFactsOfTheRun) {
   run->record.stages["odometry"] = {1.5, 4.5, 140};
   run->record.factors["odometry"] = {13, 78, 70.25};
   run->record.gaps["KEYFRAME"] = 1;
-  const std::string out = freshFolder("summary");
+  const test::TempFolder folder;
+  const std::string& out = folder.path();
   writeOutputs(run->record, out);
   const auto json = nlohmann::json::parse(readFile(out + "/summary.json"));
   for (const char* key :
@@ -90,7 +89,8 @@ TEST(RunOutputsTest, RunWithoutKeyframesWritesWhatThereIs) {
   const SituationalGraph graph;
   RunRecord record;
   record.graph = &graph;
-  const std::string out = freshFolder("empty");
+  const test::TempFolder folder;
+  const std::string& out = folder.path();
   writeOutputs(record, out);
   EXPECT_THAT(filesIn(out),
               testing::UnorderedElementsAre("trajectory.tum", "keyframes.tum", "odometry.tum", "map.ply",
@@ -99,7 +99,8 @@ TEST(RunOutputsTest, RunWithoutKeyframesWritesWhatThereIs) {
 
 TEST(RunOutputsTest, UnwritableFolderIsNamed) {
   const auto run = test::makeSyntheticRun();
-  const std::string file = testing::TempDir() + "sgraphs_run_outputs_a_file";
+  const test::TempFolder folder;
+  const std::string file = folder / "file";
   writeFile(file, "");
   try {
     writeOutputs(run->record, file + "/out");

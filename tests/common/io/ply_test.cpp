@@ -6,22 +6,16 @@
 
 #include "common/base/error.h"
 #include "common/io/text_file.h"
+#include "tests/support/temp_folder.h"
 
 namespace sgraphs {
 namespace {
 
-std::string pathOf(const std::string& name) {
-  return testing::TempDir() + "sgraphs_ply_" + name;
-}
-
-std::string written(const std::string& name, const std::string& bytes) {
-  writeFile(pathOf(name), bytes);
-  return pathOf(name);
-}
-
 std::string errorOf(const std::string& bytes) {
+  const test::TempFolder folder;
+  writeFile(folder / "bad.ply", bytes);
   try {
-    readPlyMesh(written("bad.ply", bytes));
+    readPlyMesh(folder / "bad.ply");
   } catch (const Error& error) {
     return error.what();
   }
@@ -33,32 +27,35 @@ const std::string kHead =
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 
 TEST(PlyTest, PointsSurviveARoundTrip) {
+  const test::TempFolder folder;
   const PointCloud cloud{{{1.5f, -2, 3e-3f}, {1e6f, 0, -1}}, {0, 7}};
-  writePlyPoints(pathOf("points.ply"), cloud);
-  const PointCloud read = readPlyPoints(pathOf("points.ply"));
+  writePlyPoints(folder / "points.ply", cloud);
+  const PointCloud read = readPlyPoints(folder / "points.ply");
   EXPECT_EQ(read.points, cloud.points);
   EXPECT_EQ(read.floors, cloud.floors);
   // Header and 13 bytes per point: x y z as float32, floor as uint8.
-  const std::string bytes = readFile(pathOf("points.ply"));
+  const std::string bytes = readFile(folder / "points.ply");
   EXPECT_EQ(bytes.size() - bytes.find("end_header\n") - 11, 26u);
 }
 
 TEST(PlyTest, MeshSurvivesARoundTrip) {
+  const test::TempFolder folder;
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, {{0, 1, 2}}};
-  writePlyMesh(pathOf("mesh.ply"), mesh);
-  const TriangleMesh read = readPlyMesh(pathOf("mesh.ply"));
+  writePlyMesh(folder / "mesh.ply", mesh);
+  const TriangleMesh read = readPlyMesh(folder / "mesh.ply");
   EXPECT_EQ(read.vertices, mesh.vertices);
   EXPECT_EQ(read.triangles, mesh.triangles);
 }
 
 TEST(PlyTest, PolygonsBecomeFansAndOtherPropertiesAreSkipped) {
-  const std::string path = written(
-      "quad.ply",
+  const test::TempFolder folder;
+  writeFile(
+      folder / "quad.ply",
       "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nelement vertex 4\r\nproperty uchar red\r\nproperty "
       "double x\r\n"
       "property double y\r\nproperty double z\r\nelement face 1\r\nproperty list uchar int vertex_index\r\n"
       "end_header\r\n9 0 0 0\r\n9 1 0 0\r\n9 1 1 0\r\n9 0 1 0\r\n4 0 1 2 3\r\n");
-  const TriangleMesh mesh = readPlyMesh(path);
+  const TriangleMesh mesh = readPlyMesh(folder / "quad.ply");
   EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(1, 1, 0));
   EXPECT_THAT(mesh.triangles, testing::ElementsAre(Eigen::Vector3i(0, 1, 2), Eigen::Vector3i(0, 2, 3)));
 }

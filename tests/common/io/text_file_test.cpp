@@ -5,12 +5,14 @@
 #include <filesystem>
 
 #include "common/base/error.h"
+#include "tests/support/temp_folder.h"
 
 namespace sgraphs {
 namespace {
 
 TEST(TextFileTest, EveryByteSurvives) {
-  const std::string path = testing::TempDir() + "sgraphs_text_file", bytes("a\r\n\0\xFFz", 6);
+  const test::TempFolder folder;
+  const std::string path = folder / "file", bytes("a\r\n\0\xFFz", 6);
   writeFile(path, bytes);
   EXPECT_EQ(readFile(path), bytes);
   writeFile(path, "");
@@ -18,9 +20,10 @@ TEST(TextFileTest, EveryByteSurvives) {
 }
 
 TEST(TextFileTest, WhatCannotBeReadOrWrittenIsNamed) {
-  const std::string nowhere = testing::TempDir() + "sgraphs_no_such_folder/file";
+  const test::TempFolder folder;
+  const std::string nowhere = folder / "no_such_folder/file";
   EXPECT_THROW(readFile(nowhere), Error);
-  EXPECT_THROW(readFile(testing::TempDir()), Error);
+  EXPECT_THROW(readFile(folder.path()), Error);
   try {
     writeFile(nowhere, "x");
     FAIL();
@@ -30,8 +33,8 @@ TEST(TextFileTest, WhatCannotBeReadOrWrittenIsNamed) {
 }
 
 TEST(TextFileTest, FoldersAreCreatedWithTheirParents) {
-  const std::string top = testing::TempDir() + "sgraphs_folders";
-  std::filesystem::remove_all(top);
+  const test::TempFolder folder;
+  const std::string& top = folder.path();
   createFolder(top + "/a/b");
   createFolder(top + "/a/b");
   EXPECT_TRUE(std::filesystem::is_directory(top + "/a/b"));

@@ -7,6 +7,7 @@
 #include "backend/output/graph_files.h"
 #include "common/base/error.h"
 #include "common/io/text_file.h"
+#include "tests/support/temp_folder.h"
 #include "tests/tools/eval/truth_fixture.h"
 
 namespace sgraphs {
@@ -67,7 +68,8 @@ TEST(CalibrationTest, LinksAreReadAsTheRunWritesThem) {
   graph.keyframes[{4}] = {{4}, {200}, SE3{}, SE3{}, {}, nullptr};
   graph.relative_poses.push_back(
       {0, {RelativePoseKind::kNeighbour, {3}, {4}, test::kSomeTransform, someCovariance()}});
-  const std::string path = testing::TempDir() + "sgraphs_calibration.json";
+  const test::TempFolder folder;
+  const std::string path = folder / "graph.json";
   writeFile(path, graphJson(graph, {}));
   const auto links = readMeasuredLinks(path);
   ASSERT_EQ(links.size(), 1u);
@@ -79,7 +81,8 @@ TEST(CalibrationTest, LinksAreReadAsTheRunWritesThem) {
 }
 
 TEST(CalibrationTest, BrokenGraphsAreNamed) {
-  const std::string path = testing::TempDir() + "sgraphs_broken.json";
+  const test::TempFolder folder;
+  const std::string path = folder / "graph.json";
   for (const char* text : {"{", "{\"links\":[]}"}) {
     writeFile(path, text);
     try {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "common/base/error.h"
+#include "tests/support/temp_folder.h"
 #include "tests/tools/eval/synthetic_building.h"
 #include "tools/cli/commands.h"
 
@@ -8,9 +9,8 @@ namespace sgraphs {
 namespace {
 
 TEST(EvalCommandTest, WritesTableJsonAndPlots) {
-  const std::string out = testing::TempDir() + "sgraphs_eval_command_out";
-  const std::string truth = testing::TempDir() + "sgraphs_eval_command_truth";
-  std::filesystem::remove_all(out);
+  const test::TempFolder folder;
+  const std::string out = folder / "out", truth = folder / "truth";
   const auto run = test::makeSyntheticRun();
   writeOutputs(run->record, out);
   test::writeTruth(run->room, truth);
@@ -30,8 +30,8 @@ TEST(EvalCommandTest, TruthIsRequired) {
 }
 
 TEST(EvalCommandTest, EmptyOutIsAnError) {
-  const std::string out = testing::TempDir() + "sgraphs_eval_command_empty";
-  const std::string truth = testing::TempDir() + "sgraphs_eval_command_truth_only";
+  const test::TempFolder folder;
+  const std::string out = folder / "out", truth = folder / "truth";
   createFolder(out);
   test::writeTruth(test::BoxRoom{}, truth);
   CLI::App app;

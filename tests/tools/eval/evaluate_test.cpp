@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "tests/support/temp_folder.h"
 #include "tests/tools/eval/synthetic_building.h"
 #include "tools/eval/eval_report.h"
 
@@ -12,11 +13,11 @@ namespace sgraphs {
 namespace {
 
 struct Case {
-  std::string out = testing::TempDir() + "sgraphs_evaluate_out";
-  std::string truth = testing::TempDir() + "sgraphs_evaluate_truth";
+  test::TempFolder folder;
+  std::string out = folder / "out";
+  std::string truth = folder / "truth";
 
   Case() {
-    std::filesystem::remove_all(out);
     const auto run = test::makeSyntheticRun();
     writeOutputs(run->record, out);
     test::writeTruth(run->room, truth);

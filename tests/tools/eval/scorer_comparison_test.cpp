@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tests/support/temp_folder.h"
 #include "tests/tools/eval/truth_fixture.h"
 #include "tools/eval/trajectory_error.h"
 
@@ -34,8 +35,8 @@ TEST(ScorerComparisonTest, AbsoluteErrorAgreesWithTheIndependentScorer) {
     pose.time = pose.time + Duration{3'210};
     pose.pose.translation += drift;
   }
-  const std::string gt = testing::TempDir() + "sgraphs_scorer_gt.tum";
-  const std::string est = testing::TempDir() + "sgraphs_scorer_est.tum";
+  const test::TempFolder folder;
+  const std::string gt = folder / "gt.tum", est = folder / "est.tum";
   writeTum(gt, truth);
   writeTum(est, estimate);
   const std::string output = outputOf("/usr/bin/python3 " + scorer + " ate " + gt + " " + est);
