@@ -4,6 +4,8 @@
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "common/bus/channels.h"
 
@@ -56,9 +58,11 @@ TEST(ReadmeTest, MessagesExplainsEveryChannelAndType) {
   const std::string messages = readSource("docs/messages.md");
   for (const channels::Row& row : channels::table())
     EXPECT_NE(messages.find(std::string("`") + row.name + "`"), std::string::npos) << row.name;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(SGRAPHS_SOURCE_DIR) / "lcmtypes"))
-    if (entry.path().extension() == ".lcm")
-      EXPECT_NE(messages.find("`" + entry.path().stem().string() + "`"), std::string::npos) << entry.path();
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(SGRAPHS_SOURCE_DIR) / "lcmtypes")) {
+    if (entry.path().extension() != ".lcm") continue;
+    const std::string type = entry.path().stem().string();
+    EXPECT_NE(messages.find("`" + type + "`"), std::string::npos) << type;
+  }
 }
 
 TEST(ReadmeTest, LinksLeadToFiles) {
