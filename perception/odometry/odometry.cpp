@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <utility>
 
 #include "perception/odometry/floor_under_start.h"
 #include "perception/odometry/keyframe_builder.h"
@@ -129,6 +130,7 @@ class Odometry::Impl {
     e.covariance = legsCovariance(moved, config_.legs);
     e.extrapolated = has_previous_ && mode_ != OdometryMode::kLidar && !measured;
     registered_covariance_ = Matrix6d::Zero();
+    const bool trusted_before = std::exchange(all_registered_, false);
     if (mode_ == OdometryMode::kEncoder || map_.empty()) return;
 
     MotionPrior prior;
@@ -162,6 +164,7 @@ class Odometry::Impl {
       return;
     }
     failures_ = 0;
+    all_registered_ = trusted_before;
     registered_covariance_ = config_.covariance.scale * result.covariance;
     // Against the previous scan: both ends err.
     e.covariance = registered_covariance_ + previous_registered_covariance_;
@@ -207,15 +210,20 @@ class Odometry::Impl {
       keyframe.relative_poses.push_back(r);
     }
     // A cloud put together by the legs alone is bent by their drift.
-    const Matrix6d anchor =
-        mode_ == OdometryMode::kEncoder ? Matrix6d(kBentByLegs * edge_covariance_) : registered_covariance_;
-    for (const RelativePose& r :
-         neighbours_.step(keyframe.id, e.T_odom_body, surfels, anchor, config_.threads))
+    const bool by_legs = mode_ == OdometryMode::kEncoder;
+    const Matrix6d anchor = by_legs ? Matrix6d(kBentByLegs * edge_covariance_) : registered_covariance_;
+    for (RelativePose& r : neighbours_.step(keyframe.id, e.T_odom_body, surfels, anchor, config_.threads)) {
+      // A scan is used once. Where the odometry has registered the same points against the local map, which
+      // holds the neighbour's, this second look at them errs alike: it must not count as independent, and
+      // only stands by for an odometry that has failed.
+      if (!by_legs && all_registered_) r.covariance *= config_.covariance.neighbour_deflation;
       keyframe.relative_poses.push_back(r);
+    }
     T_odom_keyframe_ = e.T_odom_body;
     keyframe_covariance_ = registered_covariance_;
     edge_covariance_ = Matrix6d::Zero();
     last_keyframe_scan_ = e.scan;
+    all_registered_ = true;
     return keyframe;
   }
 
@@ -264,7 +272,8 @@ class Odometry::Impl {
   Matrix6d keyframe_covariance_ = Matrix6d::Zero();             // of the scan that became the last keyframe
   Matrix6d edge_covariance_ = Matrix6d::Zero();                 // summed up since the last keyframe
   SE3 T_odom_keyframe_;
-  int failures_ = 0;  // scans in a row that found no place in the map
+  bool all_registered_ = true;  // every scan since the last keyframe found its place in the map
+  int failures_ = 0;            // scans in a row that found no place in the map
   int64_t next_scan_ = 0, next_keyframe_ = 0, last_keyframe_scan_ = 0;
 };
 

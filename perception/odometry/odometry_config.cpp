@@ -74,6 +74,8 @@ void CovarianceConfig::visit(ConfigVisitor& v) {
   v.field("neighbour_floor_m", neighbour_floor_m, 0.0, 1.0,
           "Added to it in quadrature: the clouds' own distortion");
   v.field("neighbour_floor_rad", neighbour_floor_rad, 0.0, 1.0, "Added to it in quadrature");
+  v.field("neighbour_deflation", neighbour_deflation, 1.0, 1e6,
+          "Factor on it where the odometry is a registration of the same points (lidar, fused)");
 }
 
 void OdometryConfig::visit(ConfigVisitor& v) {

@@ -76,6 +76,7 @@ struct CovarianceConfig {
   double neighbour_scale = 4.0;
   double neighbour_floor_m = 0.002;
   double neighbour_floor_rad = 0.0006;
+  double neighbour_deflation = 1000.0;
 
   void visit(ConfigVisitor& v);
 };
