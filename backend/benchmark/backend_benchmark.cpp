@@ -12,7 +12,6 @@
 namespace sgraphs {
 namespace {
 
-constexpr int kKeyframes = 5000;
 constexpr int kPerCircle = 100;  // keyframes of one circle of 16 m radius
 
 // CPU time of this thread: rounds are single-threaded, and other work on the machine must not count.
@@ -43,12 +42,12 @@ RelativePose measure(int from, int to, RelativePoseKind kind, std::mt19937& rand
   return z;
 }
 
-std::vector<Keyframe> trajectory(bool with_up) {
+std::vector<Keyframe> trajectory(int num_keyframes, bool with_up) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
-  std::vector<Keyframe> keyframes(kKeyframes);
+  std::vector<Keyframe> keyframes(static_cast<size_t>(num_keyframes));
   SE3 T_odom_body;
-  for (int k = 0; k < kKeyframes; ++k) {
+  for (int k = 0; k < num_keyframes; ++k) {
     Keyframe& keyframe = keyframes[static_cast<size_t>(k)];
     keyframe.id = KeyframeId{k};
     keyframe.time = Time{1000000LL * (k + 1)};
@@ -82,7 +81,8 @@ void report(benchmark::State& state, const std::string& name, std::vector<double
 }
 
 void buildTrajectory(benchmark::State& state) {
-  const std::vector<Keyframe> keyframes = trajectory(state.range(0) != 0);
+  const int num_keyframes = static_cast<int>(state.range(0));
+  const std::vector<Keyframe> keyframes = trajectory(num_keyframes, state.range(1) != 0);
   for (auto _ : state) {
     Backend backend{BackendConfig{}};
     std::vector<double> all, last_thousand;
@@ -94,13 +94,13 @@ void buildTrajectory(benchmark::State& state) {
       const double elapsed = cpuMilliseconds() - start;
       whole += output.whole_graph;
       all.push_back(elapsed);
-      if (round > kKeyframes - 1000) last_thousand.push_back(elapsed);
+      if (round > num_keyframes - 1000) last_thousand.push_back(elapsed);
     }
     report(state, "all", all);
     report(state, "last1000", last_thousand);
     state.counters["whole_rounds"] = static_cast<double>(whole);
     state.counters["chi2_per_dof"] = [&] {
-      double chi2 = 0, dof = -6.0 * (kKeyframes - 1);
+      double chi2 = 0, dof = -6.0 * (num_keyframes - 1);
       for (const auto& [kind, factors] : backend.factorStatistics()) {
         chi2 += factors.chi2;
         dof += static_cast<double>(factors.dof);
@@ -109,7 +109,14 @@ void buildTrajectory(benchmark::State& state) {
     }();
   }
 }
-BENCHMARK(buildTrajectory)->ArgName("up")->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(buildTrajectory)
+    ->ArgNames({"keyframes", "up"})
+    ->Args({1000, 0})
+    ->Args({1000, 1})
+    ->Args({5000, 0})
+    ->Args({5000, 1})
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace sgraphs

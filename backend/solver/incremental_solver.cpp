@@ -1,6 +1,7 @@
 #include "backend/solver/incremental_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "backend/solver/marginal_covariance.h"
 #include "backend/solver/region_solve.h"
@@ -9,7 +10,7 @@
 namespace sgraphs {
 namespace {
 
-// Neighbourhoods begin with this many steps along factors, and every growth doubles it.
+// Neighbourhoods begin with this many steps along factors, and grow by half as much again each time.
 constexpr int kFirstHops = 3;
 
 // The set of states that are free in a local solve.
@@ -95,8 +96,9 @@ class IncrementalSolver::Impl {
   // False: what is new is not local, or too much has been left unresolved.
   bool solveLocal(Report& report) {
     Region region(graph);
-    region.grow(seeds_, kFirstHops);
-    for (int hops = 2 * kFirstHops;; hops *= 2) {
+    int hops = kFirstHops;
+    region.grow(seeds_, hops);
+    for (;;) {
       if (static_cast<int>(region.members().size()) > options_.max_region) return false;
       const RegionOutcome outcome =
           solveRegion(graph, region.members(), options_.max_iterations, options_.settled_step_local);
@@ -113,11 +115,12 @@ class IncrementalSolver::Impl {
       }
       if (moving.empty()) {
         report.free = region.members();
-        drift_.m += unresolved.m;
-        drift_.rad += unresolved.rad;
+        drift_ = {std::hypot(drift_.m, unresolved.m), std::hypot(drift_.rad, unresolved.rad)};
         return drift_.m <= options_.drift_m && drift_.rad <= options_.drift_rad && sharedStatesRest();
       }
-      region.grow(moving, hops);
+      const int more = (hops + 1) / 2;
+      region.grow(moving, more);
+      hops += more;
     }
   }
 

@@ -19,15 +19,15 @@ struct SolverOptions {
   // What the held states at the rim of a neighbourhood would move alone is a fraction of what the chain
   // behind them would move together: in a circle of n equal links, one part in 2 n. So their steps are
   // multiplied by the number of held states, at most by this.
-  int max_leverage = 500;
+  int max_leverage = 30;
   // A neighbourhood grows while that product is above this.
-  double grow_step_m = 2e-5;
-  double grow_step_rad = 1e-6;
-  // The products that rounds left unresolved since the last whole-graph solve, summed, and what shared states
-  // (`up`) would move: more than this calls for a whole-graph solve.
+  double grow_step_m = 1e-4;
+  double grow_step_rad = 3e-5;
+  // The products that rounds left unresolved since the last whole-graph solve, as root of the sum of squares,
+  // and what shared states (`up`) would move: more than this calls for a whole-graph solve.
   double drift_m = 1e-3;
-  double drift_rad = 3e-5;
-  double shared_drift_rad = 1e-5;  // 2 mm at 200 m
+  double drift_rad = 1e-4;
+  double shared_drift_rad = 1e-4;
 
   // Solves are done when the root mean square of their steps [m, rad] is below this.
   double settled_step_local = 1e-7;

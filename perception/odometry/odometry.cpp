@@ -151,6 +151,12 @@ class Odometry::Impl {
         diagonalInformation(c.acceleration_sigma_mps2 * dt * dt, c.angular_acceleration_sigma_rps2 * dt * dt);
     const double vertical_m = c.vertical_acceleration_sigma_mps2 * dt * dt;
     prior.acceleration_information(2, 2) = 1.0 / (vertical_m * vertical_m);
+    if (!measured) {
+      // A body bobs, it does not rise: its vertical velocity is no guess for the next.
+      prior.previous_twist[2] = 0;
+      prior.height_m = height_m_;
+      prior.height_information = 1.0 / (c.height_sigma_m * c.height_sigma_m);
+    }
     const ScanMotion predicted = motion;
     const RegistrationResult result = registerScan(surfels, map_, prior, c, config_.threads, motion);
     e.inlier_share = result.inlier_share;
@@ -184,6 +190,10 @@ class Odometry::Impl {
           se3Log(motion.T_odom_body[n - 2].inverse() * motion.T_odom_body[n - 1]) / motion.step().seconds();
       has_twist_ = true;
     }
+    const double z = motion.T_odom_body.back().translation.z();
+    const double follow =
+        std::min(1.0, (motion.end - motion.begin).seconds() / config_.registration.height_memory_s);
+    height_m_ = has_previous_ ? height_m_ + follow * (z - height_m_) : z;
     edge_covariance_ = composeCovariance(edge_covariance_,
                                          previous_pose_.inverse() * motion.T_odom_body.back(), e.covariance);
     previous_registered_covariance_ = registered_covariance_;
@@ -267,6 +277,7 @@ class Odometry::Impl {
   Time previous_end_;
   Duration gap_;
   Vector6d previous_twist_ = Vector6d::Zero();
+  double height_m_ = 0;                                         // of the body in odom, smoothed
   Matrix6d registered_covariance_ = Matrix6d::Zero();           // of the newest scan; zero if not registered
   Matrix6d previous_registered_covariance_ = Matrix6d::Zero();  // of the scan before
   Matrix6d keyframe_covariance_ = Matrix6d::Zero();             // of the scan that became the last keyframe

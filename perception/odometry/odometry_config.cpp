@@ -43,6 +43,9 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
           "Prior on the change of vertical velocity: a walking body bobs");
   v.field("angular_acceleration_sigma_rps2", angular_acceleration_sigma_rps2, 0.1, 100.0,
           "Prior on the change of angular velocity");
+  v.field("height_sigma_m", height_sigma_m, 1e-4, 100.0,
+          "Lidar mode: how well a walking body keeps its height where no floor or ceiling is in view");
+  v.field("height_memory_s", height_memory_s, 0.1, 100.0, "Time over which that height follows the body");
   v.field("begin_sigma_m", begin_sigma_m, 1e-5, 1.0, "How well the end of the previous scan is trusted");
   v.field("begin_sigma_rad", begin_sigma_rad, 1e-6, 1.0, "How well the end of the previous scan is trusted");
 }

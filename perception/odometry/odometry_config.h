@@ -38,9 +38,11 @@ struct RegistrationConfig {
   double robust_width = 3.0;
   int max_iterations = 12;
   int segments = 1;
-  double acceleration_sigma_mps2 = 1.5;
+  double acceleration_sigma_mps2 = 0.8;
   double vertical_acceleration_sigma_mps2 = 5.0;
   double angular_acceleration_sigma_rps2 = 1.5;
+  double height_sigma_m = 0.01;
+  double height_memory_s = 2.0;
   double begin_sigma_m = 0.005;
   double begin_sigma_rad = 0.0008;
 

@@ -3,12 +3,17 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 namespace sgraphs {
 namespace {
 
+// Error of a cell's normal that averaging does not reduce.
+constexpr double kNormalFloor_rad = 0.008;
+// No direction is claimed to be known worse than this [1/m^2, 1/rad^2]; it keeps inverses finite.
+constexpr double kLeastInformation = 1.0;
 constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
 
 using Upper = Eigen::Matrix<double, 6, 6>;
@@ -17,6 +22,7 @@ using Upper = Eigen::Matrix<double, 6, 6>;
 struct Sums {
   std::vector<Upper> diagonal, off_diagonal;  // off_diagonal[j]: knot j with knot j+1
   std::vector<Vector6d> gradient;
+  std::vector<Vector6d> feigned, feigned_off;  // as diagonal and off_diagonal: what noise of the normals adds
   Upper rigid = Upper::Zero();
   double squares_m2 = 0;
   int matches = 0;
@@ -24,13 +30,17 @@ struct Sums {
   explicit Sums(size_t knots)
       : diagonal(knots, Upper::Zero()),
         off_diagonal(knots, Upper::Zero()),
-        gradient(knots, Vector6d::Zero()) {}
+        gradient(knots, Vector6d::Zero()),
+        feigned(knots, Vector6d::Zero()),
+        feigned_off(knots, Vector6d::Zero()) {}
 
   void add(const Sums& other) {
     for (size_t j = 0; j < diagonal.size(); ++j) {
       diagonal[j] += other.diagonal[j];
       off_diagonal[j] += other.off_diagonal[j];
       gradient[j] += other.gradient[j];
+      feigned[j] += other.feigned[j];
+      feigned_off[j] += other.feigned_off[j];
     }
     rigid += other.rigid;
     squares_m2 += other.squares_m2;
@@ -75,6 +85,14 @@ void addPatch(const Surfel& s, const ScanMotion& motion, const Pieces& pieces, c
   sums.gradient[knot] += (a * weight * r) * J;
   sums.gradient[knot + 1] += (b * weight * r) * J;
   sums.rigid += JJ;
+  // J = [m; p x m] with m off by N(0, s^2) in the tangent plane: E[J J^T] grows by s^2 (I, |p|^2 I - p p^T).
+  const double tilt2 = weight * (cell->tilt_variance + kNormalFloor_rad * kNormalFloor_rad);
+  Vector6d feigned;
+  feigned << Eigen::Vector3d::Constant(tilt2),
+      tilt2 * (Eigen::Vector3d::Constant(s.mean.squaredNorm()) - s.mean.cwiseAbs2());
+  sums.feigned[knot] += a * a * feigned;
+  sums.feigned_off[knot] += a * b * feigned;
+  sums.feigned[knot + 1] += b * b * feigned;
   // An inlier: within three standard deviations of sensor and surface.
   if (r * r < width2) {
     sums.squares_m2 += r * r;
@@ -160,6 +178,46 @@ void fillNormalEquations(const Sums& sums, Eigen::MatrixXd& H, Eigen::VectorXd& 
   }
 }
 
+// Keeps the height: r = z(X) - height, derivative by the right perturbation [third row of R, 0]. Far from the
+// height (stairs, a ramp) the Cauchy weight lets go.
+void addHeight(const MotionPrior& prior, const SE3& last, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
+  if (prior.height_information <= 0) return;
+  const double r = last.translation.z() - prior.height_m;
+  const double weight = prior.height_information / (1.0 + r * r * prior.height_information / 9.0);
+  const Eigen::Vector3d row = last.matrix3().row(2);
+  const Eigen::Index o = H.rows() - 6;
+  H.block<3, 3>(o, o) += weight * row * row.transpose();
+  g.segment<3>(o) += weight * r * row;
+}
+
+// Nearest matrix whose eigenvalues are at least kLeastInformation.
+Eigen::MatrixXd clamped(const Eigen::MatrixXd& information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(kLeastInformation).asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
+
+// Information of one rigid pose, less what is feigned.
+Matrix6d rigidInformation(const Sums& sums) {
+  Matrix6d information = sums.rigid;
+  for (size_t j = 0; j < sums.feigned.size(); ++j)
+    information.diagonal() -= sums.feigned[j] + 2.0 * sums.feigned_off[j];
+  return clamped(information);
+}
+
+// H without what is feigned.
+Eigen::MatrixXd honestInformation(const Sums& sums, Eigen::MatrixXd H) {
+  for (size_t j = 0; j < sums.feigned.size(); ++j) {
+    const auto o = static_cast<Eigen::Index>(6 * j);
+    H.diagonal().segment<6>(o) -= sums.feigned[j];
+    if (j + 1 < sums.feigned.size()) {
+      H.block<6, 6>(o, o + 6).diagonal() -= sums.feigned_off[j];
+      H.block<6, 6>(o + 6, o).diagonal() -= sums.feigned_off[j];
+    }
+  }
+  return clamped(H);
+}
+
 }  // namespace
 
 ScanMotion::Place ScanMotion::placeOf(int32_t time_us) const {
@@ -186,7 +244,7 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
   const size_t knots = motion.T_odom_body.size();
   const auto size = static_cast<Eigen::Index>(6 * knots);
   const SE3 begin = motion.T_odom_body.front();
-  Eigen::MatrixXd H(size, size);
+  Eigen::MatrixXd H(size, size), honest(size, size);
   for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
     // Far matches help only while the guess is far off.
     const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
@@ -195,21 +253,25 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
     Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
     fillNormalEquations(sums, H, g);
     addPriors(prior, begin, motion, H, g);
+    addHeight(prior, motion.T_odom_body.back(), H, g);
     // Holds directions that neither LiDAR nor prior knows (standing in the void).
     H.diagonal().array() += 1e-6;
     const Eigen::VectorXd step = -H.ldlt().solve(g);
     for (size_t j = 0; j < knots; ++j)
       motion.T_odom_body[j] =
           motion.T_odom_body[j] * se3Exp(step.segment<6>(static_cast<Eigen::Index>(6 * j)));
-    result.lidar_information = sums.rigid;
     result.matches = sums.matches;
     result.residual_rms_m = sums.matches > 0 ? std::sqrt(sums.squares_m2 / sums.matches) : 0.0;
     const Vector6d last = step.tail<6>();
     result.converged = last.head<3>().norm() < 1e-4 && last.tail<3>().norm() < 2e-5;
+    if (result.converged || result.iterations + 1 == config.max_iterations) {
+      result.lidar_information = rigidInformation(sums);
+      honest = honestInformation(sums, H);
+    }
   }
   result.inlier_share =
       surfels.empty() ? 0.0 : static_cast<double>(result.matches) / static_cast<double>(surfels.size());
-  const Eigen::MatrixXd covariance = H.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd covariance = honest.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
   result.covariance =
       0.5 * (covariance.bottomRightCorner<6, 6>() + covariance.bottomRightCorner<6, 6>().transpose());
   return result;
@@ -220,25 +282,24 @@ RegistrationResult registerRigid(const std::vector<Surfel>& surfels, const Surfe
                                  int threads, SE3& T_target_source) {
   RegistrationResult result;
   const SE3 guess = T_target_source;
-  Matrix6d H = Matrix6d::Identity();
   for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
     const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
     ScanMotion still{Time{0}, Time{1}, {T_target_source, T_target_source}};
     const Sums sums = sumPatches(surfels, still, map, config, gate_m, threads);
-    H = sums.rigid + prior_information;
+    const Matrix6d H = sums.rigid + prior_information;
     // Both knots hold the same pose, and their gradients add up to that of one rigid pose.
     const Vector6d g =
         sums.gradient[0] + sums.gradient[1] + prior_information * se3Log(guess.inverse() * T_target_source);
     const Vector6d step = -H.ldlt().solve(g);
     T_target_source = T_target_source * se3Exp(step);
-    result.lidar_information = sums.rigid;
+    result.lidar_information = rigidInformation(sums);
     result.matches = sums.matches;
     result.residual_rms_m = sums.matches > 0 ? std::sqrt(sums.squares_m2 / sums.matches) : 0.0;
     result.converged = step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 2e-5;
   }
   result.inlier_share =
       surfels.empty() ? 0.0 : static_cast<double>(result.matches) / static_cast<double>(surfels.size());
-  result.covariance = H.ldlt().solve(Matrix6d::Identity());
+  result.covariance = (result.lidar_information + prior_information).ldlt().solve(Matrix6d::Identity());
   return result;
 }
 

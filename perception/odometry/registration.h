@@ -35,6 +35,9 @@ struct MotionPrior {
   Vector6d previous_twist = Vector6d::Zero();  // of the last piece of the previous scan
   bool has_previous_twist = false;
   Matrix6d acceleration_information = Matrix6d::Identity();  // of the change of motion from piece to piece
+  // Height of the last knot in odom; no information: not held.
+  double height_m = 0;
+  double height_information = 0;
 };
 
 struct RegistrationResult {
