@@ -56,11 +56,7 @@ void KeyframeBuilder::addPoint(const Eigen::Vector3d& point, const Eigen::Vector
 void KeyframeBuilder::add(const LidarScan& scan, const std::vector<int32_t>& kept,
                           const std::vector<Surfel>& surfels, const ScanMotion& motion) {
   const SE3& T_odom_body = motion.T_odom_body.back();
-  if (!adds(T_odom_body)) {
-    // The newest pose must end the list, for the keyframe may be built from it: the scan takes the last one's
-    // place.
-    return;
-  }
+  if (!adds(T_odom_body)) return;
   const auto scan_index = static_cast<uint8_t>(T_odom_scan_.size());
   T_odom_scan_.push_back(T_odom_body);
   int32_t pose_time_us = 1;  // no firing has a positive time
@@ -96,6 +92,9 @@ Keyframe KeyframeBuilder::build(const SE3& T_odom_body, std::vector<Surfel>& sur
   has_keyframe_ = true;
   T_odom_keyframe_ = T_odom_body;
   const SE3 T_keyframe_odom = T_odom_body.inverse();
+  // The keyframe's own pose ends the list, also where its scan was left out.
+  if (T_odom_scan_.empty() || moved(T_odom_scan_.back(), T_odom_body, 1e-9, 1e-9))
+    T_odom_scan_.push_back(T_odom_body);
   Keyframe keyframe;
   keyframe.T_odom_body = T_odom_body;
   keyframe.T_body_lidar = T_body_lidar_;

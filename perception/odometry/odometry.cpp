@@ -20,7 +20,10 @@ constexpr int kMinMatches = 60;    // fewer matches are no registration
 constexpr double kMinShare = 0.08;
 constexpr double kDegenerateSigma_m = 0.03;  // a direction that one scan knows worse than this is not seen
 constexpr double kDegenerateSigma_rad = 0.01;
-constexpr Duration kMaxGap{500000};  // a longer silence begins a new local motion
+constexpr Duration kMaxGap{500000};     // a longer silence begins a new local motion
+constexpr Duration kMaxSweep{2000000};  // no LiDAR takes longer: such a scan's times are wrong
+constexpr Duration kMinSweep{5000};     // a shorter one has no firing times: it was taken at one instant
+constexpr Duration kFirstSweep{100000};
 constexpr int64_t kPruneEvery = 50;  // scans
 constexpr int kMaxFailures = 10;
 // Share of the legs' covariance over a keyframe that remains between its pose and its own cloud.
@@ -67,18 +70,22 @@ class Odometry::Impl {
 
  private:
   std::optional<OdometryOutput> stepInArena(const LidarScan& scan, std::span<const BodyOdometry> legs) {
+    // Twists over times that run backwards would throw the robot anywhere.
+    if ((has_previous_ && scan.end <= previous_end_) || scan.end - scan.begin > kMaxSweep)
+      return std::nullopt;
     const std::vector<int32_t> kept = prefilter(scan, T_body_lidar_, config_.prefilter);
     if (static_cast<int>(kept.size()) < config_.prefilter.min_points) return std::nullopt;
     const std::vector<Surfel> surfels =
         extractSurfels(scan, kept, T_body_lidar_, config_.surfels, config_.threads);
-    const int segments = config_.registration.segments;
+    const Time begin = beginOf(scan);
     std::optional<std::vector<SE3>> measured;
-    if (mode_ != OdometryMode::kLidar) measured = legsMotion(legs, scan.begin, scan.end, segments);
+    if (mode_ != OdometryMode::kLidar) measured = measuredMotion(legs, begin, scan.end);
 
     OdometryOutput output;
-    ScanMotion motion = predict(scan, legs, measured);
+    ScanMotion motion = predict(begin, scan.end, legs, measured);
     estimate(surfels, measured, motion, output.estimate);
     remember(surfels, motion, output.estimate);
+    legs_at_previous_end_ = legsPoseAt(legs, scan.end);
     builder_.add(scan, kept, surfels, motion);
 
     OdometryEstimate& e = output.estimate;
@@ -94,24 +101,45 @@ class Odometry::Impl {
     return output;
   }
 
+  // The motion of a scan without firing times begins where the scan before ended.
+  Time beginOf(const LidarScan& scan) const {
+    if (!scan.deskewed && scan.end - scan.begin >= kMinSweep) return scan.begin;
+    const bool follows = has_previous_ && scan.end - previous_end_ < kMaxGap;
+    return follows ? previous_end_ : scan.end - kFirstSweep;
+  }
+
+  // The legs' motion over the scan, in pieces. The samples reach back to the scan's begin only; where its
+  // motion begins with the scan before, the pose kept from there serves.
+  std::optional<std::vector<SE3>> measuredMotion(std::span<const BodyOdometry> legs, Time begin,
+                                                 Time end) const {
+    const int segments = config_.registration.segments;
+    const bool reach_back = legs.empty() || legs.front().time <= begin;
+    if (reach_back || !has_previous_ || begin != previous_end_ || !legs_at_previous_end_)
+      return legsMotion(legs, begin, end, segments);
+    const std::optional<SE3> to = legsPoseAt(legs, end);
+    if (!to) return std::nullopt;
+    const Vector6d total = se3Log(legs_at_previous_end_->inverse() * *to);
+    return std::vector<SE3>(static_cast<size_t>(segments), se3Exp(total / segments));
+  }
+
   // Knots at the motion expected from the legs, else from the twist of the last scan.
-  ScanMotion predict(const LidarScan& scan, std::span<const BodyOdometry> legs,
+  ScanMotion predict(Time scan_begin, Time scan_end, std::span<const BodyOdometry> legs,
                      const std::optional<std::vector<SE3>>& measured) {
     const int segments = config_.registration.segments;
     ScanMotion motion;
-    motion.end = scan.end;
-    motion.begin = scan.end - Duration{std::max<int64_t>((scan.end - scan.begin).us, 1000)};
+    motion.end = scan_end;
+    motion.begin = scan_end - Duration{std::max<int64_t>((scan_end - scan_begin).us, 1000)};
     SE3 begin;
     if (!has_previous_) {
-      const std::optional<SE3> start = measured ? legsPoseAt(legs, scan.begin) : std::nullopt;
+      const std::optional<SE3> start = measured ? legsPoseAt(legs, scan_begin) : std::nullopt;
       if (start) begin = *start;
     } else {
       // Scans follow each other without a gap, except where one was lost.
       const Duration gap = motion.begin - previous_end_;
       begin = gap < kMaxGap ? previous_pose_ * se3Exp(gap.seconds() * previous_twist_) : previous_pose_;
       if (gap.us > 1000 && mode_ != OdometryMode::kLidar) {
-        const auto from = legsPoseAt(legs, previous_end_), to = legsPoseAt(legs, motion.begin);
-        if (from && to) begin = previous_pose_ * (from->inverse() * *to);
+        const std::optional<SE3> to = legsPoseAt(legs, motion.begin);
+        if (legs_at_previous_end_ && to) begin = previous_pose_ * (legs_at_previous_end_->inverse() * *to);
       }
       gap_ = gap;
     }
@@ -126,7 +154,8 @@ class Odometry::Impl {
   void estimate(const std::vector<Surfel>& surfels, const std::optional<std::vector<SE3>>& measured,
                 ScanMotion& motion, OdometryEstimate& e) {
     const RegistrationConfig& c = config_.registration;
-    const SE3 moved = motion.T_odom_body.front().inverse() * motion.T_odom_body.back();
+    const SE3 from = has_previous_ ? previous_pose_ : motion.T_odom_body.front();
+    const SE3 moved = from.inverse() * motion.T_odom_body.back();
     e.covariance = legsCovariance(moved, config_.legs);
     e.extrapolated = has_previous_ && mode_ != OdometryMode::kLidar && !measured;
     registered_covariance_ = Matrix6d::Zero();
@@ -274,6 +303,7 @@ class Odometry::Impl {
 
   bool has_previous_ = false, has_twist_ = false;
   SE3 previous_pose_;
+  std::optional<SE3> legs_at_previous_end_;
   Time previous_end_;
   Duration gap_;
   Vector6d previous_twist_ = Vector6d::Zero();

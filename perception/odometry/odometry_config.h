@@ -72,9 +72,9 @@ struct KeyframeConfig {
 
 // Turns the information of registrations into calibrated covariances.
 struct CovarianceConfig {
-  double scale = 4.0;
-  double floor_m = 0.002;
-  double floor_rad = 0.0003;
+  double scale = 2.5;
+  double floor_m = 0.001;
+  double floor_rad = 0.0008;
   double neighbour_scale = 4.0;
   double neighbour_floor_m = 0.002;
   double neighbour_floor_rad = 0.0006;

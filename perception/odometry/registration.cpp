@@ -11,7 +11,9 @@ namespace sgraphs {
 namespace {
 
 // Error of a cell's normal that averaging does not reduce.
-constexpr double kNormalFloor_rad = 0.008;
+constexpr double kNormalFloor_rad = 0.01;
+// How many times stronger than feigned information a prior must be to hold against it.
+constexpr double kOverFeigned = 10.0;
 // No direction is claimed to be known worse than this [1/m^2, 1/rad^2]; it keeps inverses finite.
 constexpr double kLeastInformation = 1.0;
 constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
@@ -178,12 +180,15 @@ void fillNormalEquations(const Sums& sums, Eigen::MatrixXd& H, Eigen::VectorXd& 
   }
 }
 
-// Keeps the height: r = z(X) - height, derivative by the right perturbation [third row of R, 0]. Far from the
-// height (stairs, a ramp) the Cauchy weight lets go.
-void addHeight(const MotionPrior& prior, const SE3& last, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
+// Keeps the height: r = z(X) - height, derivative by the right perturbation [third row of R, 0]. It must
+// outweigh what the walls feign to know of the height (`feigned`, per m^2), and is nothing beside a floor or
+// a ceiling in view. Beyond three standard deviations (stairs, a ramp) the pull grows no more (Huber).
+void addHeight(const MotionPrior& prior, double feigned, const SE3& last, Eigen::MatrixXd& H,
+               Eigen::VectorXd& g) {
   if (prior.height_information <= 0) return;
+  const double information = prior.height_information + kOverFeigned * feigned;
   const double r = last.translation.z() - prior.height_m;
-  const double weight = prior.height_information / (1.0 + r * r * prior.height_information / 9.0);
+  const double weight = information * std::min(1.0, 3.0 / std::sqrt(r * r * information));
   const Eigen::Vector3d row = last.matrix3().row(2);
   const Eigen::Index o = H.rows() - 6;
   H.block<3, 3>(o, o) += weight * row * row.transpose();
@@ -253,7 +258,7 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
     Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
     fillNormalEquations(sums, H, g);
     addPriors(prior, begin, motion, H, g);
-    addHeight(prior, motion.T_odom_body.back(), H, g);
+    addHeight(prior, sums.feigned.back().head<3>().maxCoeff(), motion.T_odom_body.back(), H, g);
     // Holds directions that neither LiDAR nor prior knows (standing in the void).
     H.diagonal().array() += 1e-6;
     const Eigen::VectorXd step = -H.ldlt().solve(g);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "perception/odometry/knn_surfels.h"
@@ -83,6 +84,8 @@ std::vector<int32_t> prefilter(const LidarScan& scan, const SE3& T_body_lidar,
   for (size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3f& p = scan.points[i].position_lidar;
     const float r2 = p.squaredNorm();
+    // A ring beyond the scan's own has no place in its image.
+    if (scan.num_rings > 0 && scan.points[i].ring >= scan.num_rings) continue;
     // Written so that NaN fails.
     if (!(r2 >= min2 && r2 <= max2) || insideBody(R * p + t, config)) continue;
     kept.push_back(static_cast<int32_t>(i));
@@ -131,6 +134,12 @@ std::vector<Surfel> extractSurfels(const LidarScan& scan, const std::vector<int3
   return surfels;
 }
 
+double normalVariance(double thickness2, double width2, double count) {
+  const double gap2 = width2 - thickness2;
+  if (gap2 <= 0) return std::numeric_limits<double>::max();
+  return thickness2 * width2 / (count * gap2 * gap2);
+}
+
 PatchMoments::PatchMoments(const Eigen::Vector3d& origin) : origin_(origin) {}
 
 void PatchMoments::add(const Eigen::Vector3d& p) {
@@ -154,9 +163,10 @@ std::optional<Surfel> PatchMoments::surfel(const SurfelConfig& config, int32_t t
   const double width2 = eigen.eigenvalues()[1];
   if (!(thickness2 < config.max_thickness_m * config.max_thickness_m) || !(width2 > 1e-6))
     return std::nullopt;
-  // The slope of a line fit: sigma / (sqrt(n) * spread), with at least the sensor's own noise of 1 cm.
+  // With at least the sensor's own noise of 1 cm.
   const double noise2 = std::max(thickness2, 1e-4);
-  if (std::sqrt(noise2 / (count_ * width2)) > config.max_normal_sigma_rad) return std::nullopt;
+  if (normalVariance(noise2, width2, count_) > config.max_normal_sigma_rad * config.max_normal_sigma_rad)
+    return std::nullopt;
   s.normal = eigen.eigenvectors().col(0).normalized();
   if (s.normal.dot(s.mean) > 0) s.normal = -s.normal;  // towards the sensor at the lidar's origin
   s.variance_m2 = noise2 / count_;

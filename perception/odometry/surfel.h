@@ -20,6 +20,11 @@ struct Surfel {
   int32_t time_us = 0;                                   // relative to the scan's end
 };
 
+// Variance [rad^2] of the normal of `count` points that scatter thickness2 [m^2] along it and width2 along the
+// narrower direction across it: of an eigenvector (Anderson, "Asymptotic theory for principal component
+// analysis", 1963). A patch as thick as it is wide has no normal.
+double normalVariance(double thickness2, double width2, double count);
+
 // Indices into scan.points of the returns that pass the range gate, the robot's own box, and have a neighbour
 // on a surface: an isolated return in the air is none. Points that are not finite are dropped.
 std::vector<int32_t> prefilter(const LidarScan& scan, const SE3& T_body_lidar, const PrefilterConfig& config);

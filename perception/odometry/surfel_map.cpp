@@ -26,7 +26,8 @@ void updatePlane(MapCell& cell) {
   cell.normal = normal;
   const double thickness2 = std::max(eigen.eigenvalues()[0], kMinThickness2);
   cell.variance_m2 = thickness2 / cell.count;
-  cell.tilt_variance = thickness2 / (cell.count * std::max(eigen.eigenvalues()[1], 1e-4));
+  // A plane that does not know its normal is of no use beyond its mean.
+  cell.tilt_variance = std::min(normalVariance(thickness2, eigen.eigenvalues()[1], cell.count), 1.0);
 }
 
 }  // namespace

@@ -1,0 +1,197 @@
+// What may come in besides a clean stream: lost, empty, poor and impossible scans, and jumps.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "perception/odometry/odometry.h"
+#include "tests/perception/odometry/simulated_walk.h"
+
+namespace sgraphs {
+namespace {
+
+using namespace testing_support;
+
+const SE3 kStand = poseOf({2.5, 2.2, 0.52}, 0, 0, 15);
+
+// Scans of a robot walking straight at 0.7 m/s, with exact legs.
+SimulatedWalk straightWalk(double seconds, const simulate::SensorModel& model = {}) {
+  const simulate::SimulatedWorld world(simulate::makeBoxRoom(7, 5, 2.7));
+  Vector6d twist = Vector6d::Zero();
+  twist[0] = 0.7;
+  const auto truth = simulate::Trajectory::constantTwist(world.scene.start, Duration::fromSeconds(seconds),
+                                                         poseOf({1.5, 2.2, 0.52}, 0, 0, 10), twist);
+  const SE3 mount = world.scene.T_body_lidar;
+  const simulate::SensorSimulator sensor(world.caster, truth, mount, model, 9);
+  SimulatedWalk walk{truth, mount, {}, simulate::simulateLegsOdometry(truth, exactLegs(), 1)};
+  for (int64_t i = 0; i < sensor.numScans(); ++i) walk.scans.push_back(sensor.scan(i));
+  return walk;
+}
+
+// Largest distance of the estimates from the truth, both since the first scan.
+double worstError(const OdometryRun& run, const SimulatedWalk& walk) {
+  double worst = 0;
+  const OdometryEstimate& first = run.estimates.front();
+  for (const OdometryEstimate& e : run.estimates) {
+    const SE3 estimated = first.T_odom_body.inverse() * e.T_odom_body;
+    worst = std::max(
+        worst, distance(estimated, walk.truth.poseAt(first.time).inverse() * walk.truth.poseAt(e.time)));
+  }
+  return worst;
+}
+
+void expectFinite(const OdometryRun& run) {
+  for (const OdometryEstimate& e : run.estimates) {
+    EXPECT_TRUE(e.T_odom_body.isFinite());
+    EXPECT_TRUE(e.twist_body.allFinite());
+    EXPECT_TRUE(e.covariance.allFinite());
+    EXPECT_GT(e.covariance.diagonal().minCoeff(), 0);
+  }
+  for (const Keyframe& k : run.keyframes) {
+    for (const KeyframePoint& p : k.points) EXPECT_TRUE(p.position_body.allFinite());
+    for (const RelativePose& r : k.relative_poses) {
+      EXPECT_TRUE(r.T_from_to.isFinite());
+      EXPECT_TRUE(r.covariance.allFinite());
+    }
+  }
+}
+
+TEST(OdometryOdditiesTest, SurvivesLostScans) {
+  for (const size_t lost : {1u, 3u, 8u}) {
+    SimulatedWalk walk = straightWalk(2.6);
+    walk.scans.erase(walk.scans.begin() + 8, walk.scans.begin() + 8 + static_cast<std::ptrdiff_t>(lost));
+    for (const OdometryMode mode : {OdometryMode::kLidar, OdometryMode::kFused, OdometryMode::kEncoder}) {
+      // After 0.8 s without any, LiDAR alone would have to find itself over half a metre: beyond its gate.
+      if (lost == 8 && mode == OdometryMode::kLidar) continue;
+      const OdometryRun run = runOdometry(walk, mode);
+      expectFinite(run);
+      EXPECT_EQ(run.estimates.size(), walk.scans.size());
+      EXPECT_LT(worstError(run, walk), 0.02) << lost << " lost in mode " << toString(mode);
+    }
+  }
+}
+
+TEST(OdometryOdditiesTest, RefusesScansThatTellNothing) {
+  SimulatedWalk walk = straightWalk(1.2);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  LidarScan poor = walk.scans[4], empty = walk.scans[5], broken = walk.scans[6];
+  poor.points.resize(400);
+  empty.points.clear();
+  for (LidarPoint& p : broken.points) p.position_lidar = {nan, nan, nan};
+  Odometry odometry(OdometryConfig(), OdometryMode::kLidar, walk.T_body_lidar);
+  for (size_t i = 0; i < walk.scans.size(); ++i) {
+    const bool spoilt = i >= 4 && i <= 6;
+    const LidarScan& scan = i == 4 ? poor : i == 5 ? empty : i == 6 ? broken : walk.scans[i];
+    const auto output = odometry.step(scan, {});
+    EXPECT_EQ(output.has_value(), !spoilt);
+    if (!output) continue;
+    const SE3 truth = walk.truth.poseAt(walk.scans[0].end).inverse() * walk.truth.poseAt(scan.end);
+    EXPECT_LT(distance(truth, output->estimate.T_odom_body), 0.02);
+  }
+  // Also as the first ones.
+  Odometry fresh(OdometryConfig(), OdometryMode::kLidar, walk.T_body_lidar);
+  EXPECT_FALSE(fresh.step(empty, {}));
+  EXPECT_FALSE(fresh.step(broken, {}));
+  EXPECT_TRUE(fresh.step(walk.scans[7], {}));
+}
+
+TEST(OdometryOdditiesTest, RefusesTimeThatRunsBackwardsAndGoesOn) {
+  const SimulatedWalk walk = straightWalk(1.5);
+  SimulatedWalk odd = walk;
+  LidarScan again = walk.scans[5], ancient = walk.scans[5], endless = walk.scans[6];
+  ancient.begin = Time{0};
+  ancient.end = Time{100'000};
+  endless.begin = Time{0};  // ends in order, but is said to have begun decades ago
+  odd.scans.insert(odd.scans.begin() + 6, {again, ancient, endless});
+  for (const OdometryMode mode : {OdometryMode::kLidar, OdometryMode::kFused, OdometryMode::kEncoder}) {
+    const OdometryRun run = runOdometry(odd, mode), clean = runOdometry(walk, mode);
+    ASSERT_EQ(run.estimates.size(), clean.estimates.size());
+    for (size_t i = 0; i < run.estimates.size(); ++i)
+      EXPECT_EQ(run.estimates[i].T_odom_body.translation, clean.estimates[i].T_odom_body.translation);
+  }
+}
+
+TEST(OdometryOdditiesTest, StaysFiniteThroughAHugeJump) {
+  SimulatedWalk walk = straightWalk(3.0);
+  // The second half of the walk takes place elsewhere: carried off, while the legs saw nothing.
+  const simulate::SimulatedWorld elsewhere(simulate::makeBoxRoom(12, 4, 3.1));
+  const auto still = simulate::Trajectory::still(walk.scans[10].begin, Duration::fromSeconds(2.0),
+                                                 poseOf({9, 1.4, 0.52}, 0, 0, 140));
+  const simulate::SensorSimulator sensor(elsewhere.caster, still, walk.T_body_lidar, {}, 3);
+  for (size_t i = 10; i < walk.scans.size() && static_cast<int64_t>(i) - 10 < sensor.numScans(); ++i) {
+    const LidarScan other = sensor.scan(static_cast<int64_t>(i) - 10);
+    walk.scans[i].points = other.points;
+  }
+  for (const OdometryMode mode : {OdometryMode::kLidar, OdometryMode::kFused}) {
+    const OdometryRun run = runOdometry(walk, mode);
+    EXPECT_EQ(run.estimates.size(), walk.scans.size());
+    expectFinite(run);
+    for (const OdometryEstimate& e : run.estimates) EXPECT_LT(e.T_odom_body.translation.norm(), 20);
+  }
+}
+
+TEST(OdometryOdditiesTest, JumpOfTheLegsLeavesTheLidarsPoseFinite) {
+  SimulatedWalk walk = straightWalk(2.0);
+  for (BodyOdometry& sample : walk.legs)
+    if (sample.time > walk.scans[10].begin)
+      sample.T_odom_body = poseOf({500, -300, 2}, 0, 0, 100) * sample.T_odom_body;
+  for (const OdometryMode mode : {OdometryMode::kFused, OdometryMode::kEncoder})
+    expectFinite(runOdometry(walk, mode));
+}
+
+TEST(OdometryOdditiesTest, FusedWithoutLegsIsLidar) {
+  SimulatedWalk walk = straightWalk(1.5);
+  walk.legs.clear();
+  const OdometryRun run = runOdometry(walk, OdometryMode::kFused);
+  EXPECT_LT(worstError(run, walk), 0.02);
+  EXPECT_TRUE(run.estimates.back().extrapolated) << "and says that the legs were missing";
+}
+
+TEST(OdometryOdditiesTest, FollowsDeskewedScansWithoutFiringTimes) {
+  // Each scan as another program would have deskewed it to its end, unorganised.
+  SimulatedWalk walk = straightWalk(3.5);
+  for (LidarScan& scan : walk.scans) {
+    const SE3 T_end = walk.truth.poseAt(scan.end) * walk.T_body_lidar;
+    for (LidarPoint& p : scan.points) {
+      const SE3 T = walk.truth.poseAt(scan.end + Duration{p.time_us}) * walk.T_body_lidar;
+      p.position_lidar = (T_end.inverse() * (T * p.position_lidar.cast<double>())).cast<float>();
+      p.time_us = 0;
+      p.column = 0;
+      p.ring = 0;
+    }
+    scan.begin = scan.end;
+    scan.num_rings = 0;
+    scan.deskewed = true;
+  }
+  for (const OdometryMode mode : {OdometryMode::kLidar, OdometryMode::kFused, OdometryMode::kEncoder}) {
+    const OdometryRun run = runOdometry(walk, mode);
+    ASSERT_EQ(run.estimates.size(), walk.scans.size());
+    EXPECT_LT(worstError(run, walk), 0.03) << toString(mode);
+    EXPECT_NEAR(run.estimates.back().twist_body[0], 0.7, 0.15) << toString(mode);
+  }
+}
+
+TEST(OdometryOdditiesTest, StandingStillNeitherDriftsNorGrows) {
+  const simulate::SimulatedWorld world(simulate::makeBoxRoom(6, 5, 2.8));
+  const SE3 mount = world.scene.T_body_lidar;
+  const auto still = simulate::Trajectory::still(world.scene.start, Duration::fromSeconds(0.85), kStand);
+  const simulate::SensorSimulator sensor(world.caster, still, mount, {}, 2);
+  std::vector<LidarScan> scans;
+  for (int64_t i = 0; i < sensor.numScans(); ++i) scans.push_back(sensor.scan(i));
+  Odometry odometry(OdometryConfig(), OdometryMode::kLidar, mount);
+  int keyframes = 0;
+  for (size_t i = 0; i < 150; ++i) {
+    LidarScan scan = scans[i % scans.size()];
+    const Duration later{static_cast<int64_t>(i / scans.size()) * 100'000 *
+                         static_cast<int64_t>(scans.size())};
+    scan.begin = scan.begin + later;
+    scan.end = scan.end + later;
+    const auto output = odometry.step(scan, {});
+    ASSERT_TRUE(output);
+    EXPECT_LT(output->estimate.T_odom_body.translation.norm(), 0.008);
+    keyframes += output->estimate.is_keyframe;
+  }
+  EXPECT_EQ(keyframes, 1);
+}
+
+}  // namespace
+}  // namespace sgraphs
