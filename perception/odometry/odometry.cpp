@@ -27,7 +27,7 @@ constexpr Duration kFirstSweep{100000};
 constexpr int64_t kPruneEvery = 50;  // scans
 constexpr int kMaxFailures = 10;
 // Share of the legs' covariance over a keyframe that remains between its pose and its own cloud.
-constexpr double kBentByLegs = 0.15;
+constexpr double kBentByLegs = 0.05;
 
 Matrix6d diagonalInformation(double sigma_m, double sigma_rad) {
   Vector6d d;

@@ -56,7 +56,8 @@ void LegsConfig::visit(ConfigVisitor& v) {
   v.field("sigma_rad", sigma_rad, 1e-5, 1.0, "Noise of a step's rotation");
   v.field("sigma_rad_per_rad", sigma_rad_per_rad, 0.0, 1.0, "Share of the rotation added to it");
   v.field("up_sigma_rad", up_sigma_rad, 1e-4, 0.5,
-          "Error of the up direction from legs and inertial sensors");
+          "Error of the up direction per keyframe: 5 mrad times the root of the 100 keyframes over which an "
+          "inertial unit errs alike");
 }
 
 void KeyframeConfig::visit(ConfigVisitor& v) {

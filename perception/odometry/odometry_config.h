@@ -54,9 +54,9 @@ struct RegistrationConfig {
 struct LegsConfig {
   double sigma_m = 0.002;
   double sigma_per_m = 0.05;
-  double sigma_rad = 0.0005;
-  double sigma_rad_per_rad = 0.03;
-  double up_sigma_rad = 0.005;
+  double sigma_rad = 0.001;
+  double sigma_rad_per_rad = 0.05;
+  double up_sigma_rad = 0.05;
 
   void visit(ConfigVisitor& v);
 };
