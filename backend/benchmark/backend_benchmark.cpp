@@ -83,7 +83,7 @@ void report(benchmark::State& state, const std::string& name, std::vector<double
 void buildTrajectory(benchmark::State& state) {
   const int num_keyframes = static_cast<int>(state.range(0));
   const std::vector<Keyframe> keyframes = trajectory(num_keyframes, state.range(1) != 0);
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores): the idiom of Google Benchmark
     Backend backend{BackendConfig{}};
     std::vector<double> all, last_thousand;
     int64_t round = 0, whole = 0;

@@ -37,6 +37,7 @@ Paper robustExtent(const std::vector<Eigen::Vector2d>& points,
   Paper extent{Eigen::Vector2d::Constant(INFINITY), Eigen::Vector2d::Constant(-INFINITY)};
   for (int axis = 0; axis < 2 && !points.empty(); ++axis) {
     std::vector<double> values;
+    values.reserve(points.size());
     for (const auto& p : points) values.push_back(p[axis]);
     std::sort(values.begin(), values.end());
     const size_t skip = static_cast<size_t>(kOutlierShare * static_cast<double>(values.size()));

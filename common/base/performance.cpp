@@ -11,7 +11,7 @@ namespace sgraphs {
 namespace {
 
 constexpr double kBinsPerOctave = 16;
-constexpr size_t kBins = 16 * 40;  // up to 2^40 us, twelve days
+constexpr size_t kBins = size_t{16} * 40;  // up to 2^40 us, twelve days
 
 }  // namespace
 

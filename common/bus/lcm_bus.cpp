@@ -11,7 +11,7 @@ namespace sgraphs {
 namespace {
 
 // After this many bytes in one go the publisher yields for a moment; half of the stock socket buffer.
-constexpr size_t kBurstBytes = 96 * 1024;
+constexpr size_t kBurstBytes = size_t{96} * 1024;
 constexpr auto kBurstPause = std::chrono::microseconds(1500);
 
 std::string withReceiveBuffer(std::string url) {

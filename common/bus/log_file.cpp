@@ -10,9 +10,9 @@ namespace sgraphs {
 namespace {
 
 constexpr std::array<uint8_t, 4> kSync{0xED, 0xA1, 0xDA, 0x01};
-constexpr size_t kHeaderBytes = 24;                 // behind the sync word
-constexpr int64_t kMaxChannel = 63;                 // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr int64_t kMaxMessage = 256 * 1024 * 1024;  // LCM_MAX_MESSAGE_SIZE
+constexpr size_t kHeaderBytes = 24;                          // behind the sync word
+constexpr int64_t kMaxChannel = 63;                          // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr int64_t kMaxMessage = int64_t{256} * 1024 * 1024;  // LCM_MAX_MESSAGE_SIZE
 
 int64_t readBig(const uint8_t* p, int bytes) {
   uint64_t v = 0;

@@ -20,8 +20,8 @@ struct Surfel {
   int32_t time_us = 0;                                   // relative to the scan's end
 };
 
-// Variance [rad^2] of the normal of `count` points that scatter thickness2 [m^2] along it and width2 along the
-// narrower direction across it: of an eigenvector (Anderson, "Asymptotic theory for principal component
+// Variance [rad^2] of the normal of `count` points that scatter thickness2 [m^2] along it and width2 along
+// the narrower direction across it: of an eigenvector (Anderson, "Asymptotic theory for principal component
 // analysis", 1963). A patch as thick as it is wide has no normal.
 double normalVariance(double thickness2, double width2, double count);
 

@@ -58,8 +58,12 @@ TEST(OdometryCalibrationTest, CovariancesOfLinksAreTheirErrors) {
     if (!wanted) scene.path.waypoints.resize(2);
     scene.path.start_heading_rad = 0.5 * static_cast<double>(seed);
     const SimulatedWalk walk = walkThrough(scene, 100 + seed);
+    // As measured: where the odometry has used the same points already, the graph gets the neighbours'
+    // covariances deflated, which is no statement about their errors.
+    OdometryConfig config;
+    config.covariance.neighbour_deflation = 1.0;
     for (const OdometryMode mode : {OdometryMode::kLidar, OdometryMode::kFused, OdometryMode::kEncoder})
-      addLinks(runOdometry(walk, mode), walk.truth, sums[mode]);
+      addLinks(runOdometry(walk, mode, config), walk.truth, sums[mode]);
   }
   std::printf("%-8s %-10s %5s | NEES m %6s rad | inside m %5s rad | rms mm %6s mrad\n", "mode", "kind",
               "links", "", "", "");
