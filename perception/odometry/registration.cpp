@@ -15,7 +15,7 @@ constexpr double kNormalFloor_rad = 0.01;
 // How many times stronger than feigned information a prior must be to hold against it.
 constexpr double kOverFeigned = 10.0;
 // No direction is claimed to be known worse than this [1/m^2, 1/rad^2]; it keeps inverses finite.
-constexpr double kLeastInformation = 1e-3;
+constexpr double kLeastInformation = 1.0;
 constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
 
 using Upper = Eigen::Matrix<double, 6, 6>;
@@ -210,7 +210,7 @@ Matrix6d rigidInformation(const Sums& sums) {
   return clamped(information);
 }
 
-// The LiDAR's part of H without what is feigned.
+// H without what is feigned.
 Eigen::MatrixXd honestInformation(const Sums& sums, Eigen::MatrixXd H) {
   for (size_t j = 0; j < sums.feigned.size(); ++j) {
     const auto o = static_cast<Eigen::Index>(6 * j);
@@ -257,7 +257,6 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
     H.setZero();
     Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
     fillNormalEquations(sums, H, g);
-    const Eigen::MatrixXd lidar = H;
     addPriors(prior, begin, motion, H, g);
     addHeight(prior, sums.feigned.back().head<3>().maxCoeff(), motion.T_odom_body.back(), H, g);
     // Holds directions that neither LiDAR nor prior knows (standing in the void).
@@ -272,7 +271,7 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
     result.converged = last.head<3>().norm() < 1e-4 && last.tail<3>().norm() < 2e-5;
     if (result.converged || result.iterations + 1 == config.max_iterations) {
       result.lidar_information = rigidInformation(sums);
-      honest = honestInformation(sums, lidar) + (H - lidar);
+      honest = honestInformation(sums, H);
     }
   }
   result.inlier_share =
