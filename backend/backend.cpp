@@ -60,6 +60,16 @@ class Backend::Impl {
 
   const SituationalGraph& graph() const { return graph_; }
 
+  std::map<KeyframeId, Matrix6d> keyframeCovariances(size_t most) const {
+    std::map<KeyframeId, Matrix6d> covariances;
+    const size_t stride = std::max<size_t>(1, (nodes_.size() + most - 1) / std::max<size_t>(1, most));
+    size_t i = 0;
+    for (const auto& [id, node] : nodes_)
+      if (i++ % stride == 0 && id != nodes_.begin()->first)
+        if (const auto covariance = solver_.covariance(node.state)) covariances.emplace(id, *covariance);
+    return covariances;
+  }
+
   std::map<std::string, FactorStatistics> factorStatistics() const {
     std::map<std::string, FactorStatistics> statistics{
         {"odometry", {}}, {"neighbour", {}}, {"loop", {}}, {"up", {}}};
@@ -263,6 +273,10 @@ RoundOutput Backend::step(RoundInput input) {
 
 const SituationalGraph& Backend::graph() const {
   return impl_->graph();
+}
+
+std::map<KeyframeId, Matrix6d> Backend::keyframeCovariances(size_t most) const {
+  return impl_->keyframeCovariances(most);
 }
 
 std::map<std::string, FactorStatistics> Backend::factorStatistics() const {

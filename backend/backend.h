@@ -12,15 +12,18 @@
 
 namespace sgraphs {
 
-// What joined a round. Planes, rooms and loops become further members.
+// What joined a round. Rooms and loops become further members.
 struct RoundInput {
   int64_t round = 0;
   Time time;
   std::optional<Keyframe> keyframe;  // none: an idle round
+  std::optional<KeyframePlanes> planes =
+      {};  // of that keyframe; none: the layer is off, or the message was lost
 };
 
 struct RoundOutput {
   std::vector<KeyframeId> changed;  // keyframes that moved by more than the configured step, and the new one
+  std::vector<PlaneId> changed_planes;  // likewise, with those that were merged away
   SE3 T_map_odom;
   Matrix6d keyframe_covariance = Matrix6d::Identity();  // newest keyframe in map, conservative
   std::string graph_digest;
@@ -46,10 +49,13 @@ class Backend {
   // (within its iterations; the next one goes on), so a run ends with idle rounds until nothing changes.
   RoundOutput step(RoundInput input);
   const SituationalGraph& graph() const;
-  // By kind: odometry, neighbour, loop, up. dof counts residuals; those of the whole graph are their sum less
-  // 6 per keyframe but the first and, where there is an up factor, 2. chi2 is at the present states, without
-  // robust loss.
+  // By kind: odometry, neighbour, loop, up, observes, plane_up, faces, same_height. dof counts residuals;
+  // those of the whole graph are their sum less 6 per keyframe but the first and, where there is an up
+  // factor, 2. chi2 is at the present states, without robust loss.
   std::map<std::string, FactorStatistics> factorStatistics() const;
+  // Marginal covariances of T_map_body (tangent of body) given the first keyframe: of all keyframes, or of
+  // every n-th so that there are at most `most`. Costs a factorisation of the whole graph.
+  std::map<KeyframeId, Matrix6d> keyframeCovariances(size_t most = 1000) const;
 
  private:
   class Impl;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "backend/backend.h"
-#include "backend/keyframe_assembly.h"
 #include "backend/round_joiner.h"
 #include "common/base/performance.h"
 #include "common/bus/bus.h"
@@ -16,6 +15,7 @@
 #include "common/bus/input_gate.h"
 #include "common/bus/publisher.h"
 #include "common/types/session.h"
+#include "lcmtypes/convert/keyframe_assembly.h"
 
 namespace sgraphs {
 
@@ -24,6 +24,7 @@ struct BackendCore {
   std::function<RoundOutput(RoundInput)> step;
   std::function<const SituationalGraph&()> graph;
   std::function<std::map<std::string, FactorStatistics>()> factors;
+  std::function<std::map<KeyframeId, Matrix6d>()> covariances = {};
 };
 
 // The backend on a bus. Scans are worked off in the order of ODOMETRY: a keyframe's scan first runs its
@@ -50,6 +51,10 @@ class BackendNode {
 
   const SituationalGraph& graph() const { return core_.graph(); }
   std::map<std::string, FactorStatistics> factors() const { return core_.factors(); }
+  // Of T_map_body, as Backend::keyframeCovariances().
+  std::map<KeyframeId, Matrix6d> covariances() const {
+    return core_.covariances ? core_.covariances() : std::map<KeyframeId, Matrix6d>{};
+  }
   const std::optional<Session>& session() const { return session_; }
   const std::vector<OdometryEstimate>& scans() const { return scans_; }  // worked off, in order of time
   const InputGate& gate() const { return gate_; }

@@ -2,7 +2,7 @@
 
 #include <ceres/manifold.h>
 
-#include "backend/factors/tangent_basis.h"
+#include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "backend/factors/tangent_basis.h"
+#include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
 

@@ -51,6 +51,38 @@ void addCovariance(const Matrix6d& covariance, CanonicalBytes& bytes) {
     for (int c = r; c < 6; ++c) bytes.add(covariance(r, c));
 }
 
+template <typename Factor>
+void addPlanePairs(const std::vector<Factor>& factors, double Factor::*sigma, CanonicalBytes& bytes) {
+  bytes.add(static_cast<int64_t>(factors.size()));
+  for (const Factor& factor : factors) {
+    bytes.add(factor.id);
+    bytes.add(factor.a.value);
+    bytes.add(factor.b.value);
+    bytes.add(factor.*sigma);
+  }
+}
+
+void addPlanes(const SituationalGraph& graph, CanonicalBytes& bytes) {
+  bytes.add(static_cast<int64_t>(graph.planes.size()));
+  for (const auto& [id, plane] : graph.planes) {
+    bytes.add(id.value);
+    bytes.add(static_cast<int64_t>(plane.label));
+    bytes.add(plane.floor.value);
+    bytes.add(plane.normal_map);
+    bytes.add(plane.anchor_map);
+    bytes.add(plane.offset_m);
+    bytes.add(plane.covariance);
+    bytes.add(plane.centroid_map);
+    bytes.add(static_cast<int64_t>(plane.polygon_map.size()));
+    for (const Eigen::Vector3d& corner : plane.polygon_map) bytes.add(corner);
+    bytes.add(plane.num_observations);
+  }
+  for (const auto& [from, to] : graph.merged_planes) {
+    bytes.add(from.value);
+    bytes.add(to.value);
+  }
+}
+
 void addFactors(const SituationalGraph& graph, CanonicalBytes& bytes) {
   // Kinds in the order of their enumeration, within a kind in the order of their ids (they are monotonic).
   for (const RelativePoseKind kind :
@@ -66,6 +98,24 @@ void addFactors(const SituationalGraph& graph, CanonicalBytes& bytes) {
       addCovariance(z.covariance, bytes);
     }
   }
+  bytes.add(static_cast<int64_t>(graph.observations.size()));
+  for (const ObservationFactor& factor : graph.observations) {
+    bytes.add(factor.id);
+    bytes.add(factor.keyframe.value);
+    bytes.add(factor.plane.value);
+    bytes.add(factor.measurement.normal_body);
+    bytes.add(factor.measurement.centroid_body);
+    bytes.add(factor.measurement.covariance);
+  }
+  bytes.add(static_cast<int64_t>(graph.plane_ups.size()));
+  for (const PlaneUpFactor& factor : graph.plane_ups) {
+    bytes.add(factor.id);
+    bytes.add(factor.plane.value);
+    bytes.add(static_cast<int64_t>(factor.level));
+    bytes.add(factor.sigma_rad);
+  }
+  addPlanePairs(graph.faces, &FacesFactor::sigma_rad, bytes);
+  addPlanePairs(graph.same_heights, &SameHeightFactor::sigma_m, bytes);
   bytes.add(static_cast<int64_t>(graph.ups.size()));
   for (const UpFactor& factor : graph.ups) {
     bytes.add(factor.id);
@@ -87,6 +137,14 @@ void checkNodes(const SituationalGraph& graph) {
     if (node.floor.valid() && !graph.floors.contains(node.floor))
       broken("keyframe " + id.str() + " is on " + node.floor.str() + ", which does not exist");
   }
+  for (const auto& [id, plane] : graph.planes) {
+    if (!id.valid() || plane.id != id) broken("plane " + id.str() + " is filed under another id");
+    if (!(std::abs(plane.normal_map.norm() - 1.0) < 1e-6) || !plane.anchor_map.allFinite() ||
+        !std::isfinite(plane.offset_m) || !plane.centroid_map.allFinite())
+      broken("plane " + id.str() + " is not finite or its normal no unit vector");
+    if (plane.floor.valid() && !graph.floors.contains(plane.floor))
+      broken("plane " + id.str() + " is on " + plane.floor.str() + ", which does not exist");
+  }
   for (const auto& [id, floor] : graph.floors) {
     if (!id.valid() || floor.id != id) broken("floor " + id.str() + " is filed under another id");
     if (!floor.center_map.allFinite() || !std::isfinite(floor.z_m))
@@ -95,7 +153,34 @@ void checkNodes(const SituationalGraph& graph) {
   if (!(std::abs(graph.up_map.norm() - 1.0) < 1e-6)) broken("up is not a unit vector");
 }
 
+void checkPlaneFactors(const SituationalGraph& graph) {
+  const auto checkPlane = [&](PlaneId id, int64_t factor) {
+    if (!graph.planes.contains(id))
+      broken("factor " + std::to_string(factor) + " names plane " + id.str() + ", which does not exist");
+  };
+  for (const ObservationFactor& factor : graph.observations) {
+    checkPlane(factor.plane, factor.id);
+    if (!graph.keyframes.contains(factor.keyframe))
+      broken("factor " + std::to_string(factor.id) + " names keyframe " + factor.keyframe.str() +
+             ", which does not exist");
+  }
+  for (const PlaneUpFactor& factor : graph.plane_ups) checkPlane(factor.plane, factor.id);
+  for (const auto& factor : graph.faces) {
+    checkPlane(factor.a, factor.id);
+    checkPlane(factor.b, factor.id);
+  }
+  for (const auto& factor : graph.same_heights) {
+    checkPlane(factor.a, factor.id);
+    checkPlane(factor.b, factor.id);
+  }
+}
+
 }  // namespace
+
+const char* toString(PlaneLabel label) {
+  if (label == PlaneLabel::kX) return "x";
+  return label == PlaneLabel::kY ? "y" : "horizontal";
+}
 
 std::string SituationalGraph::digest() const {
   CanonicalBytes bytes;
@@ -107,6 +192,7 @@ std::string SituationalGraph::digest() const {
     bytes.add(node.T_odom_body);
     bytes.add(node.floor.value);
   }
+  addPlanes(*this, bytes);
   bytes.add(static_cast<int64_t>(floors.size()));
   for (const auto& [id, floor] : floors) {
     bytes.add(id.value);
@@ -137,6 +223,7 @@ void SituationalGraph::check() const {
     if (!factor.up_body.allFinite() || !(factor.sigma_rad > 0))
       broken("factor " + std::to_string(factor.id) + " is not finite");
   }
+  checkPlaneFactors(*this);
 }
 
 }  // namespace sgraphs

@@ -9,6 +9,7 @@
 #include "common/base/time.h"
 #include "common/geometry/se3.h"
 #include "common/types/keyframe.h"
+#include "common/types/plane.h"
 
 namespace sgraphs {
 
@@ -21,6 +22,33 @@ struct KeyframeNode {
   std::shared_ptr<const Keyframe> keyframe;  // cloud, viewpoints and measurements as they arrived
 };
 
+enum class PlaneLabel : int8_t { kX = 1, kY = 2, kHorizontal = 3 };
+const char* toString(PlaneLabel label);  // "x", "y", "horizontal", as graph.json has it
+
+// A wall face, a floor or a ceiling. The axes of its tangents are u, v = tangentBasis(normal_map).
+struct PlaneNode {
+  PlaneId id;
+  PlaneLabel label = PlaneLabel::kHorizontal;
+  FloorId floor;
+  // State: normal.(p - anchor) + offset = 0, the normal towards the side it was seen from. The anchor is the
+  // first centroid seen and no state.
+  Eigen::Vector3d normal_map = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d anchor_map = Eigen::Vector3d::Zero();
+  double offset_m = 0;
+  // Conservative, of (tilt_u [rad], tilt_v [rad], offset [m]) at the centroid.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  // What has been seen of it: the centre on the plane, and a polygon counter-clockwise seen from the
+  // observer.
+  Eigen::Vector3d centroid_map = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> polygon_map;
+  int64_t num_observations = 0;
+
+  double d() const { return offset_m - normal_map.dot(anchor_map); }  // n.p + d = 0 in map
+  double distance(const Eigen::Vector3d& p_map) const {
+    return normal_map.dot(p_map - anchor_map) + offset_m;
+  }
+};
+
 struct FloorNode {
   FloorId id;
   Eigen::Vector2d center_map = Eigen::Vector2d::Zero();
@@ -28,7 +56,7 @@ struct FloorNode {
   double z_m = 0;  // height of the walking surface in map
 };
 
-// A measurement that binds nodes. Walls, rooms and floors add their own factor lists beside these.
+// A measurement that binds nodes. Rooms and floors add their own factor lists beside these.
 struct RelativePoseFactor {
   int64_t id = 0;  // monotonic over all kinds of factors
   RelativePose measurement;
@@ -41,15 +69,51 @@ struct UpFactor {
   double sigma_rad = 0;
 };
 
-// The layers and what binds them: plain data in ordered containers; walls and rooms join as further maps of
-// nodes and lists of factors. Only the backend changes it.
+// A plane seen from a keyframe.
+struct ObservationFactor {
+  int64_t id = 0;
+  KeyframeId keyframe;
+  PlaneId plane;
+  PlaneObservation measurement;
+};
+
+// A plane that is level (horizontals) or plumb (verticals).
+struct PlaneUpFactor {
+  int64_t id = 0;
+  PlaneId plane;
+  bool level = false;
+  double sigma_rad = 0;
+};
+
+// Two faces of one wall, antiparallel at a thickness of their own.
+struct FacesFactor {
+  int64_t id = 0;
+  PlaneId a, b;
+  double sigma_rad = 0;
+};
+
+// Two horizontals of one storey at one height.
+struct SameHeightFactor {
+  int64_t id = 0;
+  PlaneId a, b;
+  double sigma_m = 0;
+};
+
+// The layers and what binds them: plain data in ordered containers; rooms join as further maps of nodes
+// and lists of factors. Only the backend changes it.
 struct SituationalGraph {
   std::map<KeyframeId, KeyframeNode> keyframes;
+  std::map<PlaneId, PlaneNode> planes;
+  std::map<PlaneId, PlaneId> merged_planes;  // planes that were found to be another, and where they live on
   std::map<FloorId, FloorNode> floors;
   Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  // state on the unit sphere
 
   std::vector<RelativePoseFactor> relative_poses;
   std::vector<UpFactor> ups;
+  std::vector<ObservationFactor> observations;
+  std::vector<PlaneUpFactor> plane_ups;
+  std::vector<FacesFactor> faces;
+  std::vector<SameHeightFactor> same_heights;
 
   // SHA-256 of the canonical snapshot: nodes by layer and id, factors by kind and ids, doubles as IEEE bits.
   std::string digest() const;

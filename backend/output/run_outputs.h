@@ -23,6 +23,7 @@ struct RunRecord {
   const SituationalGraph* graph = nullptr;
   std::vector<OdometryEstimate> scans;  // every scan, in order of time
   std::map<std::string, FactorStatistics> factors;
+  std::map<KeyframeId, Matrix6d> keyframe_covariances;  // of T_map_body, tangent of body; may hold a part
 
   // Facts for summary.json. Wall times and memory are the only ones that may differ between two replays.
   std::string version;

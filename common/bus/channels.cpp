@@ -18,12 +18,15 @@ constexpr std::array kTable{
     Row{"POSE_ODOM", "pose_t", "sgraphs-odometry", "10 Hz", false},
     Row{"KEYFRAME", "keyframe_t", "sgraphs-odometry", "per keyframe, chunks", false},
     Row{"ODOMETRY_END", "stream_end_t", "sgraphs-odometry", "once", false},
+    Row{"KEYFRAME_PLANES", "keyframe_planes_t", "sgraphs-planes", "per keyframe", false},
+    Row{"PLANES_END", "stream_end_t", "sgraphs-planes", "once", false},
     Row{"GRAPH_UPDATE", "graph_update_t", "sgraphs-backend", "per round", false},
     Row{"GRAPH_SNAPSHOT", "graph_update_t", "sgraphs-backend", "every 50 rounds", false},
     Row{"MAP_TO_ODOM", "map_to_odom_t", "sgraphs-backend", "per round", false},
     Row{"POSE", "pose_t", "sgraphs-backend", "10 Hz", false},
     Row{"RUN_RESULT", "run_result_t", "sgraphs-backend", "once", false},
     Row{"STATUS_ODOMETRY", "status_t", "sgraphs-odometry", "1 Hz", false},
+    Row{"STATUS_PLANES", "status_t", "sgraphs-planes", "1 Hz", false},
     Row{"STATUS_BACKEND", "status_t", "sgraphs-backend", "1 Hz", false},
 };
 

@@ -4,6 +4,7 @@
 
 #include "common/bus/bus.h"
 #include "sgraphs/graph_update_t.hpp"
+#include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
 #include "sgraphs/map_to_odom_t.hpp"
@@ -31,13 +32,16 @@ inline constexpr Channel<stream_end_t> kStreamEnd{"STREAM_END"};
 inline constexpr Channel<odometry_t> kOdometry{"ODOMETRY"};
 inline constexpr Channel<pose_t> kPoseOdom{"POSE_ODOM"};
 inline constexpr Channel<keyframe_t> kKeyframe{"KEYFRAME"};
+inline constexpr Channel<keyframe_planes_t> kKeyframePlanes{"KEYFRAME_PLANES"};
 inline constexpr Channel<stream_end_t> kOdometryEnd{"ODOMETRY_END"};
+inline constexpr Channel<stream_end_t> kPlanesEnd{"PLANES_END"};
 inline constexpr Channel<graph_update_t> kGraphUpdate{"GRAPH_UPDATE"};
 inline constexpr Channel<graph_update_t> kGraphSnapshot{"GRAPH_SNAPSHOT"};
 inline constexpr Channel<map_to_odom_t> kMapToOdom{"MAP_TO_ODOM"};
 inline constexpr Channel<pose_t> kPose{"POSE"};
 inline constexpr Channel<run_result_t> kRunResult{"RUN_RESULT"};
 inline constexpr Channel<status_t> kStatusOdometry{"STATUS_ODOMETRY"};
+inline constexpr Channel<status_t> kStatusPlanes{"STATUS_PLANES"};
 inline constexpr Channel<status_t> kStatusBackend{"STATUS_BACKEND"};
 
 // One row per channel: the README shows this table and a test compares the two.

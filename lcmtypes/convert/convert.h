@@ -7,7 +7,9 @@
 #include "common/io/tum.h"
 #include "common/types/keyframe.h"
 #include "common/types/lidar_scan.h"
+#include "common/types/plane.h"
 #include "common/types/session.h"
+#include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
 #include "sgraphs/odometry_t.hpp"
@@ -62,5 +64,12 @@ std::optional<LidarScan> fromMessages(std::span<const lidar_points_t> chunks);
 // m.
 std::vector<keyframe_t> toMessages(const Keyframe& keyframe);
 std::optional<Keyframe> fromMessages(std::span<const keyframe_t> chunks);
+
+// Most planes of a keyframe and corners of a boundary, so that the message stays one datagram.
+inline constexpr int kMaxPlanesPerKeyframe = 64;
+inline constexpr int kMaxBoundaryCorners = 48;
+// Throws std::logic_error for more planes or corners than that.
+keyframe_planes_t toMessage(const KeyframePlanes& planes);
+std::optional<KeyframePlanes> fromMessage(const keyframe_planes_t& message);
 
 }  // namespace sgraphs

@@ -11,12 +11,15 @@
 #include <string>
 
 #include "sgraphs/graph_node_t.hpp"
+#include "sgraphs/graph_plane_t.hpp"
 #include "sgraphs/graph_update_t.hpp"
 #include "sgraphs/header_t.hpp"
+#include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
 #include "sgraphs/map_to_odom_t.hpp"
 #include "sgraphs/odometry_t.hpp"
+#include "sgraphs/plane_t.hpp"
 #include "sgraphs/pose_t.hpp"
 #include "sgraphs/relative_pose_t.hpp"
 #include "sgraphs/round_schedule_t.hpp"
@@ -44,9 +47,10 @@ std::map<std::string, std::string> fingerprints() {
 }
 
 std::map<std::string, std::string> built() {
-  return fingerprints<graph_node_t, graph_update_t, header_t, keyframe_t, lidar_points_t, map_to_odom_t,
-                      odometry_t, pose_t, relative_pose_t, round_schedule_t, run_result_t, session_t,
-                      spot_odometry_t, status_t, stream_end_t, transform_t, velodyne_packets_t>();
+  return fingerprints<graph_node_t, graph_plane_t, graph_update_t, header_t, keyframe_planes_t, keyframe_t,
+                      lidar_points_t, map_to_odom_t, odometry_t, plane_t, pose_t, relative_pose_t,
+                      round_schedule_t, run_result_t, session_t, spot_odometry_t, status_t, stream_end_t,
+                      transform_t, velodyne_packets_t>();
 }
 
 std::map<std::string, std::string> locked() {
@@ -63,7 +67,7 @@ TEST(FingerprintsTest, EveryTypeHasTheLockedFingerprint) {
     const auto line = file.find(name);
     EXPECT_TRUE(line != file.end() && line->second == hash)
         << "lcmtypes/fingerprints.txt must say '" << name << " " << hash
-        << "'; a changed message also raises kMessageSchema";
+        << "'; a change to a raw channel's message also raises kMessageSchema";
   }
   EXPECT_EQ(file.size(), types.size());
 }

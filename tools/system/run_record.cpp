@@ -11,6 +11,7 @@ RunRecord recordOf(const BackendNode& backend, const SystemConfig& config) {
   record.graph = &backend.graph();
   record.scans = backend.scans();
   record.factors = backend.factors();
+  record.keyframe_covariances = backend.covariances();
   record.version = SGRAPHS_VERSION;
   record.config_digest = digestOf(config);
   record.graph_digest = backend.result().graph_digest;

@@ -30,7 +30,8 @@ BackendCore makeBackendCore(const SystemConfig& config) {
   auto backend = std::make_shared<Backend>(config.backend);
   return {[backend](RoundInput input) { return backend->step(std::move(input)); },
           [backend]() -> const SituationalGraph& { return backend->graph(); },
-          [backend] { return backend->factorStatistics(); }};
+          [backend] { return backend->factorStatistics(); },
+          [backend] { return backend->keyframeCovariances(); }};
 }
 
 std::string describeRefused(const Vlp16Counts& counts) {

@@ -1,4 +1,4 @@
-#include "backend/keyframe_assembly.h"
+#include "lcmtypes/convert/keyframe_assembly.h"
 
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "backend/factors/tangent_basis.h"
+#include "common/geometry/tangent_basis.h"
 
 #include <cmath>
 

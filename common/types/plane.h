@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/base/time.h"
+
+namespace sgraphs {
+
+// A plane segment seen from one keyframe. Its axes are u, v = tangentBasis(normal_body).
+struct PlaneObservation {
+  Eigen::Vector3d normal_body = Eigen::Vector3d::UnitZ();   // unit, towards the observer
+  Eigen::Vector3d centroid_body = Eigen::Vector3d::Zero();  // on the plane, centre of its information [m]
+  // Of (tilt_u [rad], tilt_v [rad], offset [m]) at the centroid: the true normal is n + tilt_u u + tilt_v v,
+  // and the true plane passes at centroid + offset n.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  int num_points = 0;  // raw points behind it
+  double rms_m = 0;    // root mean square distance of the points
+  double area_m2 = 0;  // of the boundary
+  // Polygon in the plane: (u, v) from the centroid [m], counter-clockwise seen from the observer, not closed.
+  std::vector<Eigen::Vector2f> boundary;
+
+  // n.p + d = 0 in body; positive, since the normal points to the observer.
+  double d() const { return -normal_body.dot(centroid_body); }
+};
+
+// The planes seen from one keyframe, largest area first.
+struct KeyframePlanes {
+  KeyframeId keyframe;
+  Time time;  // of the keyframe
+  std::vector<PlaneObservation> planes;
+};
+
+}  // namespace sgraphs
