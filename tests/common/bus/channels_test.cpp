@@ -31,14 +31,17 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kPoseOdom, false);
   expectRow(kKeyframe, false);
   expectRow(kOdometryEnd, false);
+  expectRow(kKeyframePlanes, false);
+  expectRow(kPlanesEnd, false);
   expectRow(kGraphUpdate, false);
   expectRow(kGraphSnapshot, false);
   expectRow(kMapToOdom, false);
   expectRow(kPose, false);
   expectRow(kRunResult, false);
   expectRow(kStatusOdometry, false);
+  expectRow(kStatusPlanes, false);
   expectRow(kStatusBackend, false);
-  EXPECT_EQ(table().size(), 17u);
+  EXPECT_EQ(table().size(), 20u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {
