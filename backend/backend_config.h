@@ -1,5 +1,6 @@
 #pragma once
 
+#include "backend/planes/plane_layer_config.h"
 #include "common/config/config_io.h"
 
 namespace sgraphs {
@@ -7,9 +8,11 @@ namespace sgraphs {
 // Members are listed once, in visit(); see config_io.h.
 struct BackendConfig {
   int max_iterations = 10;
+  PlaneLayerConfig planes;
 
   void visit(ConfigVisitor& v) {
     v.field("max_iterations", max_iterations, 1, 100, "Ceres iterations of one round at most");
+    v.section("planes", planes, "Walls, floors and ceilings: association and what is known of them");
   }
 };
 

@@ -14,14 +14,17 @@ namespace {
 
 // Messages that may wait for SESSION.
 constexpr size_t kMaxEarly = 2000;
+// Planes may come before the keyframe's own message does, by no more than what fits the queues.
+constexpr int64_t kMaxPlanesAhead = 100;
 
-// What a round waits for, and by which id. Planes, free space, rooms and loops join as further rows; a row
+// What a round waits for, and by which id. Free space, rooms and loops join as further rows; a row
 // counts if SESSION lists its stage.
 struct JoinedInput {
   const char* channel;
   const char* stage;
 };
-constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry"}};
+constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry"},
+                                            {channels::kKeyframePlanes.name, "planes"}};
 
 }  // namespace
 
@@ -30,7 +33,9 @@ BackendNode::BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode)
   listen(channels::kSession, &BackendNode::onSession);
   listen(channels::kOdometry, &BackendNode::onOdometry);
   listen(channels::kKeyframe, &BackendNode::onKeyframe);
+  listen(channels::kKeyframePlanes, &BackendNode::onPlanes);
   listen(channels::kOdometryEnd, &BackendNode::onOdometryEnd);
+  listen(channels::kPlanesEnd, &BackendNode::onPlanesEnd);
   listen(channels::kStreamEnd, &BackendNode::onStreamEnd);
   if (mode_ == RoundJoiner::Mode::kWait) listen(channels::kRoundSchedule, &BackendNode::onSchedule);
 }
@@ -61,7 +66,7 @@ void BackendNode::onSession(const session_t& m) {
   session_ = session;
   publisher_.setSession(session->id);
   for (const std::string& stage : session->stages)
-    if (stage != "odometry" && stage != "backend")
+    if (stage != "odometry" && stage != "planes" && stage != "backend")
       spdlog::warn("SESSION lists stage '{}', which this version does not have: rounds go on without it",
                    stage);
   for (const auto& handle : std::exchange(early_, {})) handle();
@@ -98,6 +103,22 @@ void BackendNode::onKeyframe(const keyframe_t& m) {
   advance();
 }
 
+void BackendNode::onPlanes(const keyframe_planes_t& m) {
+  const std::string channel = channels::kKeyframePlanes.name;
+  int64_t lost_before = 0;
+  if (done() || !gate_.accept(channel, m.header, &lost_before)) return;
+  if (m.keyframe < next_keyframe_) return gate_.reject(channel, "its round is closed");
+  if (m.keyframe > newest_planes_ + kMaxPlanesAhead + lost_before)
+    return gate_.reject(channel, "a keyframe that cannot be");
+  const std::optional<KeyframePlanes> planes = fromMessage(m);
+  if (!planes) return gate_.reject(channel, "content that cannot be right");
+  if (!joiner_.arrived({channel, m.keyframe, m.header.seq}))
+    return gate_.reject(channel, "planes that came before, or too many ahead of their rounds");
+  planes_[m.keyframe] = *planes;
+  newest_planes_ = std::max(newest_planes_, m.keyframe);
+  advance();
+}
+
 void BackendNode::onSchedule(const round_schedule_t& m) {
   const std::string channel = channels::kRoundSchedule.name;
   if (done() || !gate_.accept(channel, m.header)) return;
@@ -116,7 +137,24 @@ void BackendNode::onOdometryEnd(const stream_end_t& m) {
   if (done() || !gate_.accept(channels::kOdometryEnd.name, m.header)) return;
   closeChannel(gate_, m, channels::kOdometry.name);
   closeChannel(gate_, m, channels::kKeyframe.name);
-  finish(m.why_not);
+  odometry_end_why_not_ = m.why_not;
+  finishIfAllEnded();
+}
+
+void BackendNode::onPlanesEnd(const stream_end_t& m) {
+  if (done() || !gate_.accept(channels::kPlanesEnd.name, m.header)) return;
+  closeChannel(gate_, m, channels::kKeyframePlanes.name);
+  planes_end_why_not_ = m.why_not;
+  finishIfAllEnded();
+}
+
+void BackendNode::finishIfAllEnded() {
+  if (!odometry_end_why_not_ || (takesPart("planes") && !planes_end_why_not_)) return;
+  std::string why_not = *odometry_end_why_not_;
+  // A later stage repeats what it was told.
+  if (planes_end_why_not_ && *planes_end_why_not_ != why_not)
+    why_not += (why_not.empty() || planes_end_why_not_->empty() ? "" : "; ") + *planes_end_why_not_;
+  finish(why_not);
 }
 
 void BackendNode::advance() {
@@ -152,13 +190,20 @@ void BackendNode::workOffKeyframesLeft() {
   }
 }
 
+bool BackendNode::takesPart(const std::string& stage) const {
+  if (!session_) return false;
+  const auto& stages = session_->stages;
+  return stages.empty() || stage == "odometry" ||
+         std::find(stages.begin(), stages.end(), stage) != stages.end();
+}
+
+// The stage works in order: two later ones have come, or it has ended.
+bool BackendNode::planesLost(int64_t keyframe) const {
+  return input_ended_ || planes_end_why_not_ || newest_planes_ >= keyframe + 2;
+}
+
 RoundJoiner::Wants BackendNode::wantsOf(int64_t keyframe) const {
   RoundJoiner::Wants wants;
-  const auto takesPart = [this](const std::string& stage) {
-    const auto& stages = session_->stages;
-    return stages.empty() || stage == "odometry" ||
-           std::find(stages.begin(), stages.end(), stage) != stages.end();
-  };
   for (const JoinedInput& input : kKeyedByKeyframe)
     if (takesPart(input.stage)) wants[input.channel] = keyframe;
   return wants;
@@ -166,17 +211,19 @@ RoundJoiner::Wants BackendNode::wantsOf(int64_t keyframe) const {
 
 bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) {
   const RoundJoiner::Wants wants = wantsOf(next_keyframe_);
-  if (!joiner_.ready(rounds_, wants)) {
-    if (!overdue) return false;
-    joiner_.lost(channels::kKeyframe.name, next_keyframe_);
-  }
+  if (overdue) joiner_.lost(channels::kKeyframe.name, next_keyframe_);
+  if (planesLost(next_keyframe_)) joiner_.lost(channels::kKeyframePlanes.name, next_keyframe_);
+  if (!joiner_.ready(rounds_, wants)) return false;
   const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
-  missing_ += static_cast<int64_t>(joined.missing.size());
-  std::optional<Keyframe> keyframe = joinedKeyframe(estimate);
+  for (const std::string& channel : joined.missing) ++missing_[channel];
+  RoundInput input{.round = rounds_, .time = {}, .keyframe = joinedKeyframe(estimate)};
+  if (const auto planes = planes_.find(next_keyframe_); planes != planes_.end())
+    input.planes = std::move(planes->second);
   ++next_keyframe_;
-  if (!keyframe) return true;
-  const Time time = keyframe->time;
-  runRound({rounds_, time, std::move(keyframe)}, joined);
+  planes_.erase(planes_.begin(), planes_.lower_bound(next_keyframe_));
+  if (!input.keyframe) return true;
+  input.time = input.keyframe->time;
+  runRound(std::move(input), joined);
   return true;
 }
 
@@ -246,7 +293,8 @@ void BackendNode::finish(const std::string& why_not) {
     if (!reason.empty()) m.why_not += (m.why_not.empty() ? "" : "; ") + reason;
   };
   because(gate_.trouble());
-  if (missing_ > 0) because(std::to_string(missing_) + " KEYFRAME(s) incomplete when their round ran");
+  for (const auto& [channel, n] : missing_)
+    because(std::to_string(n) + " " + channel + " incomplete when their round ran");
   if (!session_) because("no SESSION arrived");
   because(why_not);
   m.reproducible = m.why_not.empty();
@@ -256,8 +304,8 @@ void BackendNode::finish(const std::string& why_not) {
 
 void BackendNode::publishStatus() {
   const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
-  status_t status =
-      makeStatus("sgraphs-backend", state, gate_, publisher_, pending_.size() + assembly_.size(), latency_);
+  status_t status = makeStatus("sgraphs-backend", state, gate_, publisher_,
+                               pending_.size() + assembly_.size() + planes_.size(), latency_);
   status.header.utime = newest_time_.us;
   publisher_.send(channels::kStatusBackend, status);
 }

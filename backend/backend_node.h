@@ -39,8 +39,8 @@ class BackendNode {
   // The bus must outlive the node. In live mode ROUND_SCHEDULE is written, else it is read and obeyed.
   BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode = RoundJoiner::Mode::kWait);
 
-  // Ends a run whose ODOMETRY_END does not come: works off what is held, runs the final rounds, publishes
-  // RUN_RESULT. `why_not`: why another run may differ; empty if it may not.
+  // Ends a run whose ODOMETRY_END or PLANES_END does not come: works off what is held, runs the final rounds,
+  // publishes RUN_RESULT. `why_not`: why another run may differ; empty if it may not.
   void finish(const std::string& why_not);
   void publishStatus();
 
@@ -67,8 +67,10 @@ class BackendNode {
   void onSession(const session_t& m);
   void onOdometry(const odometry_t& m);
   void onKeyframe(const keyframe_t& m);
+  void onPlanes(const keyframe_planes_t& m);
   void onSchedule(const round_schedule_t& m);
   void onOdometryEnd(const stream_end_t& m);
+  void onPlanesEnd(const stream_end_t& m);
   void onStreamEnd(const stream_end_t& m);
 
   void advance();
@@ -76,6 +78,9 @@ class BackendNode {
   void workOffKeyframesLeft();
   bool keyframeRound(const OdometryEstimate* estimate, bool overdue);
   std::optional<Keyframe> joinedKeyframe(const OdometryEstimate* estimate);
+  void finishIfAllEnded();
+  bool takesPart(const std::string& stage) const;
+  bool planesLost(int64_t keyframe) const;
   RoundJoiner::Wants wantsOf(int64_t keyframe) const;
   void runRound(RoundInput input, const RoundJoiner::Joined& joined);
   void publishSchedule(const RoundInput& input, const RoundJoiner::Joined& joined);
@@ -101,7 +106,10 @@ class BackendNode {
   Time last_round_;
   RoundOutput newest_round_;
   std::vector<OdometryEstimate> scans_;
-  int64_t missing_ = 0;  // outputs that a round went without
+  std::map<int64_t, KeyframePlanes> planes_;  // of keyframes whose rounds have not run, by keyframe
+  int64_t newest_planes_ = -1;
+  std::map<std::string, int64_t> missing_;  // outputs that rounds went without, by channel
+  std::optional<std::string> odometry_end_why_not_, planes_end_why_not_;  // of the stages that have ended
   bool input_ended_ = false;
   bool stream_ended_ = false;
   std::optional<run_result_t> result_;

@@ -61,7 +61,7 @@ bool decode(Bus::Bytes bytes, Message& message) {
 // caller).
 template <typename Message, typename Function>
 void subscribe(Bus& bus, const Channel<Message>& channel, Function handler,
-               std::function<void()> on_undecodable) {
+               const std::function<void()>& on_undecodable) {
   bus.subscribe(channel.name, [handler, on_undecodable](Bus::Bytes bytes) {
     Message message{};
     if (decode(bytes, message))

@@ -19,6 +19,7 @@ struct RelativePose {
   KeyframeId to;
   SE3 T_from_to;
   Matrix6d covariance = Matrix6d::Identity();  // of the right perturbation: translation [m], rotation [rad]
+  bool registered = false;  // made from the very scans that the keyframes' planes are made from
 };
 
 // One voxel centroid of a keyframe's aggregated cloud.

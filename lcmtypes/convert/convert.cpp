@@ -102,14 +102,15 @@ std::optional<OdometryEstimate> fromMessage(const odometry_t& m) {
   const std::optional<Matrix6d> covariance = covarianceFrom(m.covariance);
   OdometryEstimate e;
   for (int i = 0; i < 6; ++i) e.twist_body[i] = m.twist_body[i];
-  if (!T || !covariance || !e.twist_body.allFinite() || m.scan < 0) return std::nullopt;
+  if (!T || !covariance || !e.twist_body.allFinite() || m.scan < 0 || m.num_degenerate < 0)
+    return std::nullopt;
   e.time = Time{m.header.utime};
   e.scan = m.scan;
   e.T_odom_body = *T;
   e.covariance = *covariance;
   e.inlier_share = m.inlier_share;
   e.residual_rms_m = m.residual_rms_m;
-  e.num_degenerate = m.num_degenerate;
+  e.num_degenerate = static_cast<uint8_t>(m.num_degenerate);
   e.extrapolated = m.extrapolated != 0;
   e.keyframe = KeyframeId{m.keyframe};
   e.is_keyframe = m.is_keyframe != 0;

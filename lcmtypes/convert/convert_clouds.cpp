@@ -31,6 +31,7 @@ relative_pose_t toMessage(const RelativePose& r) {
   m.T_from_to = toMessage(r.T_from_to);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) m.covariance[6 * i + j] = r.covariance(i, j);
+  m.registered = r.registered;
   return m;
 }
 
@@ -40,8 +41,12 @@ std::optional<RelativePose> fromMessage(const relative_pose_t& m) {
   if (!T || m.kind < 0 || m.kind > 2 || m.from_keyframe < 0 || m.to_keyframe < 0 || !covariance.allFinite() ||
       covariance.llt().info() != Eigen::Success)
     return std::nullopt;
-  return RelativePose{static_cast<RelativePoseKind>(m.kind), KeyframeId{m.from_keyframe},
-                      KeyframeId{m.to_keyframe}, *T, covariance};
+  return RelativePose{static_cast<RelativePoseKind>(m.kind),
+                      KeyframeId{m.from_keyframe},
+                      KeyframeId{m.to_keyframe},
+                      *T,
+                      covariance,
+                      m.registered != 0};
 }
 
 int16_t quantise(float value, double resolution_m) {

@@ -25,6 +25,7 @@ std::optional<UpDirection> floorUnderStart(const std::vector<Surfel>& surfels) {
   // z = a x + b y + c, refitted to the patches within the gate; the first fit is a level plane at the median
   // height.
   std::vector<double> heights;
+  heights.reserve(candidates.size());
   for (const Surfel* s : candidates) heights.push_back(s->mean.z());
   std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
                    heights.end());

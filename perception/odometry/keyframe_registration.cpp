@@ -36,6 +36,7 @@ std::vector<RelativePose> KeyframeRegistration::step(KeyframeId id, const SE3& T
     r.from = reference.id;
     r.to = id;
     r.T_from_to = T_from_to;
+    r.registered = true;
     r.covariance = covariance_.neighbour_scale * result.covariance +
                    composeCovariance(reference.anchor_covariance, T_from_to, anchor_covariance);
     r.covariance.diagonal().head<3>().array() +=

@@ -246,6 +246,7 @@ class Odometry::Impl {
       r.to = keyframe.id;
       r.T_from_to = previous.inverse() * e.T_odom_body;
       r.covariance = odometryEdgeCovariance(r.T_from_to);
+      r.registered = mode_ != OdometryMode::kEncoder;
       keyframe.relative_poses.push_back(r);
     }
     // A cloud put together by the legs alone is bent by their drift.

@@ -96,7 +96,7 @@ TEST_F(BackendNodeTest, PoseUsesTheRoundOfTheNewestKeyframeAtOrBeforeItsScan) {
   ASSERT_EQ(poses.messages.size(), 7u);
   for (int s = 0; s < 7; ++s) {
     EXPECT_NEAR(poses.messages[s].pos[0], 0.1 * s, 1e-12);
-    EXPECT_DOUBLE_EQ(poses.messages[s].pos[2], 1.0 + s / 3);  // the fake lifts by 1 + round
+    EXPECT_DOUBLE_EQ(poses.messages[s].pos[2], 1.0 + static_cast<double>(s / 3));  // the fake lifts by 1 + round
   }
 }
 
@@ -218,7 +218,7 @@ TEST_F(BackendNodeTest, DerivedMessagesOfAnotherSessionAreRefusedEvenBeforeSessi
   odometry_t foreign{};
   foreign.header.session = 99;
   foreign.T_odom_body.wxyz[0] = 1;
-  for (int i = 0; i < 6; ++i) foreign.covariance[7 * i] = 1;
+  for (int i = 0; i < 6; ++i) foreign.covariance[static_cast<size_t>(7 * i)] = 1;
   publish(bus, channels::kOdometry, foreign);
   bus.dispatch(0);
   play(stream);

@@ -48,6 +48,7 @@ std::vector<double> floorHeights(const Truth& truth) {
 
 std::vector<Eigen::Vector2d> seenFromAbove(const std::vector<StampedPose>& poses, const SE3& T_truth_map) {
   std::vector<Eigen::Vector2d> line;
+  line.reserve(poses.size());
   for (const auto& pose : poses) line.push_back((T_truth_map * pose.pose.translation).head<2>());
   return line;
 }

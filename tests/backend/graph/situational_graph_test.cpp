@@ -14,7 +14,7 @@ SituationalGraph smallGraph() {
   for (int k = 0; k < 3; ++k) {
     KeyframeNode node;
     node.id = KeyframeId{k};
-    node.time = Time{100 * k};
+    node.time = Time{100LL * k};
     node.T_map_body.translation.x() = k;
     node.floor = FloorId{0};
     graph.keyframes.emplace(node.id, node);

@@ -137,7 +137,7 @@ TEST(OdometryTest, GivesTheSameBitsAgainAndAtAnyNumberOfThreads) {
 TEST(OdometryTest, HeadingOfTheStartAgainstTheWallsDoesNotMatter) {
   simulate::Scene scene = furnishedRoom();
   scene.path.waypoints.resize(2);
-  double error_m[2];
+  double error_m[2] = {0, 0};
   for (const int i : {0, 1}) {
     scene.path.start_heading_rad = i * std::numbers::pi / 4;
     const SimulatedWalk walk = walkThrough(scene, 5);

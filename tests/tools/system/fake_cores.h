@@ -105,7 +105,7 @@ class FakeBackend {
   std::string digest_;
 };
 
-inline OdometryParts partsOf(std::shared_ptr<FakeOdometry> fake) {
+inline OdometryParts partsOf(const std::shared_ptr<FakeOdometry>& fake) {
   OdometryParts parts;
   // One packet is one scan of 0.1 s: these tests are not about decoding.
   parts.make_decoder = [] {
@@ -125,8 +125,8 @@ inline OdometryParts partsOf(std::shared_ptr<FakeOdometry> fake) {
   return parts;
 }
 
-inline BackendCore coreOf(std::shared_ptr<FakeBackend> fake) {
-  return {[fake](RoundInput input) { return fake->step(input); },
+inline BackendCore coreOf(const std::shared_ptr<FakeBackend>& fake) {
+  return {[fake](const RoundInput& input) { return fake->step(input); },
           [fake]() -> const SituationalGraph& { return fake->graph; },
           [] { return std::map<std::string, FactorStatistics>{}; }};
 }

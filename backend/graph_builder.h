@@ -1,0 +1,82 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "backend/backend.h"
+#include "backend/graph/situational_graph.h"
+#include "backend/solver/incremental_solver.h"
+
+namespace sgraphs {
+
+// The graph and its solver as one thing: every node has a state, every factor of the graph one of the
+// solver. What is added here is added to both; after a solve the nodes hold the states' values.
+class GraphBuilder {
+ public:
+  explicit GraphBuilder(const SolverOptions& options) : solver_(options) {}
+
+  const SituationalGraph& graph() const { return graph_; }
+  const IncrementalSolver& solver() const { return solver_; }
+
+  // The first keyframe is held: it defines the map. The node's pose is the initial value.
+  void addKeyframe(KeyframeNode node);
+  void addFloor(FloorId id) { graph_.floors.try_emplace(id, FloorNode{.id = id}); }
+  // The node's normal, anchor and offset are the initial values; the id is given here.
+  PlaneId addPlane(PlaneNode node);
+
+  // A relative pose that closes a circle; its effect is not local.
+  static bool closesCircle(const RelativePose& z);
+  void addRelativePose(const RelativePose& z);
+  void addUp(KeyframeId keyframe, const Eigen::Vector3d& up_body, double sigma_rad);
+  void addObservation(KeyframeId keyframe, PlaneId plane, const PlaneObservation& z);
+  void addPlaneUp(PlaneId plane, bool level, double sigma_rad);
+  void addFaces(PlaneId a, PlaneId b, double sigma_rad);
+  void addSameHeight(PlaneId a, PlaneId b, double sigma_m);
+
+  // All that is known of `from` becomes knowledge of `into`, which lives on; `from` is no node any more.
+  void mergePlanes(PlaneId from, PlaneId into);
+
+  // Turns the map about the first keyframe so that `up` is z again and the first keyframe keeps its heading.
+  // Residuals do not change: the whole map turns. Nothing without an up factor.
+  void relevel();
+
+  IncrementalSolver::Report solve(bool whole);
+
+  void setExtent(PlaneId plane, const std::vector<Eigen::Vector2d>& points);
+  void setCovariance(KeyframeId keyframe, const Matrix6d& covariance) {
+    graph_.keyframes.at(keyframe).covariance = covariance;
+  }
+  void setCovariance(PlaneId plane, const Eigen::Matrix3d& at_centroid);
+  void setLabel(PlaneId plane, PlaneLabel label) { graph_.planes.at(plane).label = label; }
+
+  // Marginals at the present states, if the factors determine them.
+  std::optional<Matrix6d> covariance(KeyframeId id) const;
+  std::optional<Eigen::Matrix3d> covariance(PlaneId id) const;  // at the centroid
+
+  std::map<std::string, FactorStatistics> statistics() const;
+
+ private:
+  using StateId = IncrementalSolver::StateId;
+  struct Registered {
+    std::string kind;
+    IncrementalSolver::FactorId factor = -1;
+  };
+  int64_t add(const std::string& kind, std::unique_ptr<ceres::CostFunction> cost, std::vector<StateId> states,
+              std::optional<double> cauchy_scale);
+  StateId upState();
+  void takeOver(const std::vector<StateId>& states);
+
+  SituationalGraph graph_;
+  IncrementalSolver solver_;
+  std::map<KeyframeId, StateId> keyframe_states_;
+  std::map<PlaneId, StateId> plane_states_;
+  std::map<StateId, KeyframeId> keyframe_of_state_;
+  std::map<StateId, PlaneId> plane_of_state_;
+  StateId up_state_ = -1;
+  std::map<int64_t, Registered> factors_;  // by id of the graph's factors
+  int64_t next_factor_ = 0;
+  int64_t next_plane_ = 0;
+};
+
+}  // namespace sgraphs

@@ -1,0 +1,288 @@
+#include "backend/planes/plane_layer.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "backend/planes/plane_extent.h"
+#include "backend/planes/plane_pairs.h"
+#include "backend/planes/plane_residual.h"
+
+namespace sgraphs {
+namespace {
+
+// A plane that was last seen so many keyframes ago closes a circle when it is seen again.
+constexpr int64_t kCircleSpan = 20;
+// So many keyframes must take two planes for one before they are merged.
+constexpr int kTwinEvidence = 3;
+// Planes within this of level or plumb are taken for it.
+constexpr double kUprightWithin_rad = 0.07;
+// A plane is announced again when it changed by more than this.
+constexpr double kAnnounceStep_m = 1e-3;
+constexpr double kAnnounceStep_rad = 1e-4;
+constexpr size_t kMaxUnmapped = 500;
+// Covariances are first-order, about states that still move a little.
+constexpr double kCovarianceMargin = 1.02;
+
+PlaneNode planeFrom(const PlaneObservation& z, const SE3& T_map_body, FloorId floor) {
+  PlaneNode plane;
+  plane.floor = floor;
+  plane.normal_map = T_map_body.rotation * z.normal_body;
+  plane.anchor_map = T_map_body * z.centroid_body;
+  setExtent(plane, extentOn(plane, z, T_map_body));
+  return plane;
+}
+
+Eigen::Matrix3d atAnchor(const PlaneObservation& z, const SE3& T_map_body, const PlaneNode& plane) {
+  return movedCovariance(observedPlaneCovariance(z, T_map_body, Matrix6d::Zero()), plane.normal_map,
+                         T_map_body * z.centroid_body, plane.anchor_map);
+}
+
+}  // namespace
+
+void PlaneLayer::advance(const RelativePose& z) {
+  const auto age = [&z](Track& track) {
+    track.drift = composeCovariance(track.drift, z.T_from_to, z.covariance);
+  };
+  const auto reframe = [](Track& track, const Eigen::Vector3d& normal_map) {
+    track.covariance = reframedCovariance(track.covariance, track.normal_map, normal_map);
+    track.normal_map = normal_map;
+  };
+  const SituationalGraph& graph = builder_.graph();
+  for (auto& [id, track] : tracks_) {
+    age(track);
+    reframe(track, graph.planes.at(id).normal_map);
+  }
+  for (Unmapped& unmapped : unmapped_) {
+    age(unmapped.track);
+    unmapped.plane =
+        planeFrom(unmapped.z, graph.keyframes.at(unmapped.keyframe).T_map_body, unmapped.plane.floor);
+    reframe(unmapped.track, unmapped.plane.normal_map);
+  }
+}
+
+// Mapped planes by id, then those seen once.
+std::vector<PlaneCandidate> PlaneLayer::candidates() const {
+  std::vector<PlaneCandidate> candidates;
+  for (const auto& [id, track] : tracks_)
+    candidates.push_back({&builder_.graph().planes.at(id), track.covariance, track.drift});
+  for (const Unmapped& unmapped : unmapped_)
+    candidates.push_back({&unmapped.plane, unmapped.track.covariance, unmapped.track.drift});
+  return candidates;
+}
+
+PlaneLayer::Sighting PlaneLayer::associate(KeyframeId keyframe, const KeyframePlanes& planes) const {
+  const SE3& T_map_body = builder_.graph().keyframes.at(keyframe).T_map_body;
+  const std::vector<PlaneCandidate> known = candidates();
+  Sighting sighting;
+  sighting.observations = planes.planes;
+  sighting.candidate = associatePlanes(planes.planes, T_map_body, known, config_.gate);
+  sighting.information.setZero();
+  for (size_t i = 0; i < sighting.observations.size(); ++i) {
+    const auto& candidate = sighting.candidate[i];
+    if (!candidate || *candidate >= tracks_.size()) continue;
+    const PlaneResidual r = planeResidual(sighting.observations[i], T_map_body, *known[*candidate].plane);
+    sighting.information += r.by_pose.transpose() * sighting.observations[i].covariance.inverse() * r.by_pose;
+  }
+  return sighting;
+}
+
+bool PlaneLayer::add(KeyframeId keyframe, const Sighting& sighting) {
+  const KeyframeNode& node = builder_.graph().keyframes.at(keyframe);
+  seen_.clear();
+  countTwins(sighting);
+  bool circle = false;
+  std::vector<PlaneId> mapped;
+  for (const auto& [id, track] : tracks_) mapped.push_back(id);
+  const size_t num_mapped = mapped.size();
+  std::map<size_t, PlaneId> just_mapped;  // index into unmapped_ -> its plane
+  std::vector<Unmapped> fresh;
+  for (size_t i = 0; i < sighting.observations.size(); ++i) {
+    const PlaneObservation& z = sighting.observations[i];
+    const auto& candidate = sighting.candidate[i];
+    if (!candidate) {
+      if (z.area_m2 < config_.min_area_m2) continue;
+      const PlaneNode plane = planeFrom(z, node.T_map_body, node.floor);
+      fresh.push_back({keyframe,
+                       z,
+                       plane,
+                       {atAnchor(z, node.T_map_body, plane), plane.normal_map, Matrix6d::Zero(), keyframe}});
+      continue;
+    }
+    if (*candidate < num_mapped) {
+      const PlaneId plane = mapped[*candidate];
+      circle = circle || keyframe.value - tracks_.at(plane).last_seen.value > kCircleSpan;
+      observe(keyframe, plane, z, tracks_.at(plane));
+      continue;
+    }
+    const size_t index = *candidate - num_mapped;
+    if (!just_mapped.contains(index)) {
+      map(unmapped_[index]);
+      just_mapped[index] = builder_.graph().planes.rbegin()->first;
+    }
+    observe(keyframe, just_mapped[index], z, tracks_.at(just_mapped[index]));
+  }
+  std::vector<Unmapped> rest;
+  for (size_t i = 0; i < unmapped_.size(); ++i)
+    if (!just_mapped.contains(i)) rest.push_back(std::move(unmapped_[i]));
+  rest.insert(rest.end(), fresh.begin(), fresh.end());
+  unmapped_ = std::move(rest);
+  forgetOld(keyframe);
+  return circle;
+}
+
+void PlaneLayer::map(const Unmapped& unmapped) {
+  const SE3& T_map_body = builder_.graph().keyframes.at(unmapped.keyframe).T_map_body;
+  PlaneNode plane = planeFrom(unmapped.z, T_map_body, unmapped.plane.floor);
+  plane.label = axes_.label(plane.normal_map, builder_.graph().up_map);
+  plane.covariance =
+      movedCovariance(observedPlaneCovariance(unmapped.z, T_map_body,
+                                              builder_.graph().keyframes.at(unmapped.keyframe).covariance),
+                      plane.normal_map, plane.anchor_map, plane.centroid_map);
+  const PlaneId id = builder_.addPlane(std::move(plane));
+  tracks_[id] = unmapped.track;
+  builder_.addObservation(unmapped.keyframe, id, unmapped.z);
+  addUpright(id);
+}
+
+// What was known of the plane, made older by the drift, and the new sight of it, fused.
+void PlaneLayer::observe(KeyframeId keyframe, PlaneId id, const PlaneObservation& z, Track& track) {
+  const SE3& T_map_body = builder_.graph().keyframes.at(keyframe).T_map_body;
+  const PlaneNode& plane = builder_.graph().planes.at(id);
+  const PlaneResidual r = planeResidual(z, T_map_body, plane);
+  const Eigen::Matrix3d A = r.by_plane.inverse();
+  const Eigen::Matrix3d seen = A * z.covariance * A.transpose();
+  const Eigen::Matrix3d drift = A * r.by_pose * track.drift * r.by_pose.transpose() * A.transpose();
+  track.covariance = ((track.covariance + drift).inverse() + seen.inverse()).inverse();
+  track.covariance = 0.5 * (track.covariance + track.covariance.transpose()).eval();
+  track.drift.setZero();
+  track.last_seen = keyframe;
+
+  builder_.addObservation(keyframe, id, z);
+  Polygon2d extent = extentOf(plane);
+  const Polygon2d more = extentOn(plane, z, T_map_body);
+  extent.insert(extent.end(), more.begin(), more.end());
+  builder_.setExtent(id, extent);
+  seen_.push_back(id);
+}
+
+void PlaneLayer::addUpright(PlaneId id) {
+  const SituationalGraph& graph = builder_.graph();
+  const double along_up = std::abs(graph.planes.at(id).normal_map.dot(graph.up_map));
+  if (along_up > std::cos(kUprightWithin_rad)) builder_.addPlaneUp(id, true, config_.level_sigma_rad);
+  if (along_up < std::sin(kUprightWithin_rad)) builder_.addPlaneUp(id, false, config_.plumb_sigma_rad);
+}
+
+void PlaneLayer::forgetOld(KeyframeId newest) {
+  std::erase_if(unmapped_, [&](const Unmapped& u) {
+    return newest.value - u.keyframe.value > config_.patience_keyframes;
+  });
+  if (unmapped_.size() > kMaxUnmapped)
+    unmapped_.erase(unmapped_.begin(), unmapped_.end() - static_cast<std::ptrdiff_t>(kMaxUnmapped));
+}
+
+// An observation that fits two mapped planes whose extents meet says that they are one.
+void PlaneLayer::countTwins(const Sighting& sighting) {
+  std::vector<PlaneId> ids;
+  for (const auto& [id, track] : tracks_) ids.push_back(id);
+  const auto& planes = builder_.graph().planes;
+  for (const auto& candidate : sighting.candidate) {
+    if (!candidate || *candidate >= ids.size()) continue;
+    const PlaneId a = ids[*candidate];
+    for (const PlaneId b : ids)
+      if (a != b && areOneSurface(planes.at(a), planes.at(b), config_.gate)) twins_[std::minmax(a, b)] += 1;
+  }
+}
+
+void PlaneLayer::mergeTwins() {
+  for (auto it = twins_.begin(); it != twins_.end();) {
+    const auto [into, from] = it->first;
+    const auto& planes = builder_.graph().planes;
+    if (!planes.contains(into) || !planes.contains(from)) {
+      it = twins_.erase(it);
+      continue;
+    }
+    if (it->second < kTwinEvidence || !areOneSurface(planes.at(into), planes.at(from), config_.gate)) {
+      ++it;
+      continue;
+    }
+    builder_.mergePlanes(from, into);
+    if (tracks_.at(from).last_seen > tracks_.at(into).last_seen) {
+      tracks_.at(into).last_seen = tracks_.at(from).last_seen;
+      tracks_.at(into).drift = tracks_.at(from).drift;
+    }
+    tracks_.erase(from);
+    announced_.erase(from);
+    merged_away_.insert(from);
+    std::erase(seen_, from);
+    it = twins_.erase(it);
+  }
+}
+
+void PlaneLayer::pairFaces(PlaneId id) {
+  const auto& planes = builder_.graph().planes;
+  for (const auto& [other, plane] : planes)
+    if (areFacesOfOneWall(planes.at(id), plane, builder_.graph().up_map) &&
+        paired_.insert(std::minmax(id, other)).second)
+      builder_.addFaces(std::min(id, other), std::max(id, other), config_.parallel_sigma_rad);
+}
+
+// To the oldest of its height only: pairs do not pile up.
+void PlaneLayer::pairHeights(PlaneId id) {
+  const auto& planes = builder_.graph().planes;
+  for (const auto& [other, plane] : planes) {
+    if (other >= id) return;
+    if (!areOneHeight(planes.at(id), plane, builder_.graph().up_map)) continue;
+    if (paired_.insert({other, id}).second) builder_.addSameHeight(other, id, config_.same_height_sigma_m);
+    return;
+  }
+}
+
+void PlaneLayer::settle(bool whole) {
+  mergeTwins();
+  for (const PlaneId id : seen_) {
+    pairFaces(id);
+    pairHeights(id);
+  }
+  if (whole) remakeExtents();
+  axes_.update(builder_.graph().planes, builder_.graph().up_map);
+  for (const auto& [id, track] : tracks_)
+    builder_.setLabel(id, axes_.label(builder_.graph().planes.at(id).normal_map, builder_.graph().up_map));
+  seen_.clear();
+}
+
+void PlaneLayer::remakeExtents() {
+  std::map<PlaneId, Polygon2d> points;
+  const SituationalGraph& graph = builder_.graph();
+  for (const ObservationFactor& factor : graph.observations) {
+    const Polygon2d seen = extentOn(graph.planes.at(factor.plane), factor.measurement,
+                                    graph.keyframes.at(factor.keyframe).T_map_body);
+    Polygon2d& all = points[factor.plane];
+    all.insert(all.end(), seen.begin(), seen.end());
+  }
+  for (const auto& [id, extent] : points) builder_.setExtent(id, extent);
+}
+
+void PlaneLayer::refreshCovariances() {
+  for (const auto& [id, track] : tracks_)
+    if (const auto covariance = builder_.covariance(id))
+      builder_.setCovariance(id, kCovarianceMargin * *covariance);
+}
+
+std::vector<PlaneId> PlaneLayer::takeChanged() {
+  std::vector<PlaneId> changed(merged_away_.begin(), merged_away_.end());
+  merged_away_.clear();
+  for (const auto& [id, plane] : builder_.graph().planes) {
+    Announced& known = announced_[id];
+    const bool still = (known.normal - plane.normal_map).norm() < kAnnounceStep_rad &&
+                       std::abs(known.d - plane.d()) < kAnnounceStep_m &&
+                       known.num_observations == plane.num_observations;
+    if (still) continue;
+    known = {plane.normal_map, plane.d(), plane.num_observations};
+    changed.push_back(id);
+  }
+  std::sort(changed.begin(), changed.end());
+  return changed;
+}
+
+}  // namespace sgraphs

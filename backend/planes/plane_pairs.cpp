@@ -1,0 +1,46 @@
+#include "backend/planes/plane_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "backend/planes/plane_extent.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr double kParallel_rad = 0.05;
+constexpr double kUpright = 0.07;  // |n.up| of a wall, and sine of the angle between a floor and level
+constexpr double kMinThickness_m = 0.03, kMaxThickness_m = 0.6;
+constexpr double kFacingShare = 0.3;  // of the smaller extent
+constexpr double kOneHeight_m = 0.05;
+constexpr double kFloorArea_m2 = 4.0;
+
+}  // namespace
+
+bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate) {
+  if (a.floor != b.floor || a.normal_map.dot(b.normal_map) < std::cos(4 * gate.surface_rad)) return false;
+  if (gapBetween(extentOf(a), extentOn(a, b)) > 0) return false;
+  return std::abs(a.distance(b.centroid_map)) < 2.5 * gate.surface_m &&
+         std::abs(b.distance(a.centroid_map)) < 2.5 * gate.surface_m;
+}
+
+bool areFacesOfOneWall(const PlaneNode& a, const PlaneNode& b, const Eigen::Vector3d& up_map) {
+  if (a.floor != b.floor || a.normal_map.dot(b.normal_map) > -std::cos(kParallel_rad)) return false;
+  if (std::abs(a.normal_map.dot(up_map)) > kUpright || std::abs(b.normal_map.dot(up_map)) > kUpright)
+    return false;
+  // b lies behind a: a's normal points away from it.
+  const double thickness = -a.distance(b.centroid_map);
+  if (thickness < kMinThickness_m || thickness > kMaxThickness_m) return false;
+  const Polygon2d own = extentOf(a), other = extentOn(a, b);
+  return overlapArea(own, other) > kFacingShare * std::min(polygonArea(own), polygonArea(other));
+}
+
+bool areOneHeight(const PlaneNode& a, const PlaneNode& b, const Eigen::Vector3d& up_map) {
+  const double up_a = a.normal_map.dot(up_map), up_b = b.normal_map.dot(up_map);
+  const double level = std::cos(kUpright);
+  if (a.floor != b.floor || up_a * up_b < 0 || std::min(std::abs(up_a), std::abs(up_b)) < level) return false;
+  if (extentArea(a) < kFloorArea_m2 || extentArea(b) < kFloorArea_m2) return false;
+  return std::abs(up_map.dot(a.centroid_map - b.centroid_map)) < kOneHeight_m;
+}
+
+}  // namespace sgraphs

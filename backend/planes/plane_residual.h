@@ -1,0 +1,31 @@
+#pragma once
+
+#include "backend/graph/situational_graph.h"
+
+namespace sgraphs {
+
+// What an observation says of a plane: (tilt_u, tilt_v, offset) by which the plane is off the observation,
+// seen in body, with the Jacobians by the pose's tangent and the plane's (tilt_u, tilt_v, offset at anchor).
+struct PlaneResidual {
+  Eigen::Vector3d value;  // [rad, rad, m]
+  Eigen::Matrix<double, 3, 6> by_pose;
+  Eigen::Matrix3d by_plane;
+};
+PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, const PlaneNode& plane);
+
+// Covariance of a plane's tangent, carried from one point on the plane to another: the lever turns tilt into
+// offset. u, v are tangentBasis(normal).
+Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal,
+                                const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+// Covariance of a plane's tangent for a normal that has turned a little or with the whole map: the axes are a
+// function of the normal, and flip where its z changes sign.
+Eigen::Matrix3d reframedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal_then,
+                                   const Eigen::Vector3d& normal_now);
+
+// Covariance (at the centroid of the observation, in the axes of the plane) of a plane in map that was seen
+// once, from a pose with this covariance.
+Eigen::Matrix3d observedPlaneCovariance(const PlaneObservation& z, const SE3& T_map_body,
+                                        const Matrix6d& pose);
+
+}  // namespace sgraphs
