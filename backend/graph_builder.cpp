@@ -97,15 +97,14 @@ void GraphBuilder::addObservation(KeyframeId keyframe, PlaneId plane, const Plan
 }
 
 void GraphBuilder::addPlaneUp(PlaneId plane, bool level, double sigma_rad) {
-  const PlaneNode& node = graph_.planes.at(plane);
-  auto cost = PlaneUpCost::Create(node.normal_map, level, sigma_rad);
+  auto cost = PlaneUpCost::Create(level ? PlaneUpCost::Kind::kLevel : PlaneUpCost::Kind::kPlumb, sigma_rad);
   const int64_t id =
       add("plane_up", std::move(cost), {plane_states_.at(plane), upState()}, level ? kCauchy2 : kCauchy1);
   graph_.plane_ups.push_back({id, plane, level, sigma_rad});
 }
 
 void GraphBuilder::addFaces(PlaneId a, PlaneId b, double sigma_rad) {
-  const int64_t id = add("faces", FacesCost::Create(graph_.planes.at(a).normal_map, sigma_rad),
+  const int64_t id = add("faces", FacesCost::Create(sigma_rad),
                          {plane_states_.at(a), plane_states_.at(b)}, kCauchy2);
   graph_.faces.push_back({id, a, b, sigma_rad});
 }

@@ -96,7 +96,8 @@ TEST_F(BackendNodeTest, PoseUsesTheRoundOfTheNewestKeyframeAtOrBeforeItsScan) {
   ASSERT_EQ(poses.messages.size(), 7u);
   for (int s = 0; s < 7; ++s) {
     EXPECT_NEAR(poses.messages[s].pos[0], 0.1 * s, 1e-12);
-    EXPECT_DOUBLE_EQ(poses.messages[s].pos[2], 1.0 + static_cast<double>(s / 3));  // the fake lifts by 1 + round
+    EXPECT_DOUBLE_EQ(poses.messages[s].pos[2],
+                     1.0 + static_cast<double>(s / 3));  // the fake lifts by 1 + round
   }
 }
 

@@ -14,7 +14,7 @@ namespace sgraphs::test {
 // A folder of the running test's own, emptied first; tests run side by side as processes.
 inline std::filesystem::path freshFolder() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(testing::TempDir()) /
+  auto folder = std::filesystem::path(testing::TempDir()) /
                       (std::string("sgraphs_") + info->test_suite_name() + "_" + info->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);

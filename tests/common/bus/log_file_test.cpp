@@ -19,7 +19,7 @@ std::vector<uint8_t> payload(int i) {
 
 // Three events of 28 + 1 bytes and a payload of 3, 4 and 5 bytes.
 fs::path threeEvents() {
-  const fs::path path = test::freshFolder() / "three.lcmlog";
+  fs::path path = test::freshFolder() / "three.lcmlog";
   LogWriter log(path);
   for (int i = 3; i < 6; ++i) log.write(1000 * i, "C", payload(i));
   log.close();

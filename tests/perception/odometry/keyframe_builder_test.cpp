@@ -36,6 +36,7 @@ struct Feed {
 
   void add(const std::vector<Eigen::Vector3d>& points_odom, const SE3& T_odom_body) {
     std::vector<Eigen::Vector3d> points_lidar;
+    points_lidar.reserve(points_odom.size());
     for (const Eigen::Vector3d& p : points_odom) points_lidar.push_back((T_odom_body * kMount).inverse() * p);
     const LidarScan scan = scanOf(points_lidar);
     builder.add(scan, allOf(scan), {}, stillAt(T_odom_body));

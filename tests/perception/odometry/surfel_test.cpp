@@ -117,7 +117,7 @@ TEST(ScanImageTest, ScanWithoutColumnsGetsThemFromAzimuthClockwise) {
   right.position_lidar = {0, -5, 0};
   behind.position_lidar = {-5, -1e-4f, 0};
   EXPECT_GT(image.columnOf(right), image.columnOf(left));
-  EXPECT_NEAR(image.columnOf(right) - image.columnOf(left), image.columns() / 2, 1);
+  EXPECT_NEAR(image.columnOf(right) - image.columnOf(left), 0.5 * image.columns(), 1);
   EXPECT_LT(image.columnOf(behind), image.columns());
   // Neighbours of one ring stand in neighbouring columns.
   for (size_t i = 0; i + 3 < scan.points.size(); i += 3)

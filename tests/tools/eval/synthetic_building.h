@@ -31,6 +31,7 @@ inline void writeTruth(const BoxRoom& room, const std::string& folder) {
   std::filesystem::remove_all(folder);
   createFolder(folder);
   std::vector<StampedPose> poses;
+  poses.reserve(1400);
   for (int i = 0; i < 1400; ++i)
     poses.push_back({{1'700'000'000'000'000 + i * 10'000}, kT_building_map * squarePath(0.01 * i)});
   writeTum(folder + "/gt.tum", poses);

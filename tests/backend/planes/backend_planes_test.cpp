@@ -1,0 +1,173 @@
+// The backend with planes, on a ring of corridors with exact truth.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <set>
+
+#include "backend/backend.h"
+#include "backend/planes/plane_residual.h"
+#include "tests/backend/planes/ring_walk.h"
+
+namespace sgraphs {
+namespace {
+
+using testing_support::Face;
+using testing_support::makeRingWalk;
+using testing_support::RingOptions;
+using testing_support::RingWalk;
+
+struct Run {
+  Backend backend{BackendConfig{}};
+  RoundOutput newest;
+  double ate_m = 0;
+
+  explicit Run(const RingWalk& walk, bool with_planes = true) {
+    int64_t round = 0;
+    for (size_t k = 0; k < walk.keyframes.size(); ++k) {
+      RoundInput input{.round = round++, .time = walk.keyframes[k].time, .keyframe = walk.keyframes[k]};
+      if (with_planes) input.planes = walk.planes[k];
+      newest = backend.step(std::move(input));
+    }
+    for (int i = 0; i < 3; ++i)
+      newest = backend.step({.round = round++, .time = walk.keyframes.back().time, .keyframe = {}});
+    backend.graph().check();
+    double sum = 0;
+    for (const auto& [id, node] : backend.graph().keyframes)
+      sum += (node.T_map_body.translation -
+              (walk.T_map_world() * walk.truth[static_cast<size_t>(id.value)]).translation)
+                 .squaredNorm();
+    ate_m = std::sqrt(sum / static_cast<double>(walk.keyframes.size()));
+  }
+  const SituationalGraph& graph() const { return backend.graph(); }
+};
+
+std::multiset<std::string> labels(const SituationalGraph& graph) {
+  std::multiset<std::string> all;
+  for (const auto& [id, plane] : graph.planes) all.insert(toString(plane.label));
+  return all;
+}
+
+TEST(BackendPlanesTest, EveryFaceIsOnePlaneAndTheLapCloses) {
+  const RingWalk walk = makeRingWalk({});
+  const Run with(walk), without(walk, false);
+  EXPECT_EQ(with.graph().planes.size(), walk.faces.size());
+  EXPECT_LT(with.ate_m, 0.02);
+  EXPECT_LT(with.ate_m, 0.3 * without.ate_m);
+  for (const auto& [id, plane] : with.graph().planes) {
+    const auto of = std::find_if(walk.faces.begin(), walk.faces.end(), [&](const Face& face) {
+      const Eigen::Vector3d normal = walk.T_map_world().rotation * face.normal;
+      const Eigen::Vector3d centre = walk.T_map_world() * face.centre;
+      return normal.dot(plane.normal_map) > 0.999 && std::abs(plane.distance(centre)) < 0.05;
+    });
+    EXPECT_NE(of, walk.faces.end()) << id.str();
+  }
+}
+
+TEST(BackendPlanesTest, EveryKindOfFactorReachesTheSolver) {
+  const Run run(makeRingWalk({}));
+  const auto statistics = run.backend.factorStatistics();
+  const SituationalGraph& graph = run.graph();
+  EXPECT_EQ(statistics.at("observes").count, static_cast<int64_t>(graph.observations.size()));
+  EXPECT_EQ(statistics.at("plane_up").count, static_cast<int64_t>(graph.planes.size()));
+  for (const char* kind : {"odometry", "observes", "plane_up"}) {
+    EXPECT_GT(statistics.at(kind).chi2, 0) << kind;
+    EXPECT_LT(statistics.at(kind).chi2, 1.3 * static_cast<double>(statistics.at(kind).dof)) << kind;
+  }
+}
+
+// Independent noise of known size: the stated covariances must be true, of poses and of planes.
+TEST(BackendPlanesTest, CovariancesAreCalibrated) {
+  double pose_nees = 0, plane_nees = 0, num_poses = 0, num_planes = 0;
+  for (uint32_t seed = 1; seed <= 6; ++seed) {
+    const RingWalk walk = makeRingWalk({.seed = seed});
+    const Run run(walk);
+    for (const auto& [id, covariance] : run.backend.keyframeCovariances()) {
+      const SE3 truth = walk.T_map_world() * walk.truth[static_cast<size_t>(id.value)];
+      const Vector6d error = se3Log(run.graph().keyframes.at(id).T_map_body.inverse() * truth);
+      pose_nees += error.dot(covariance.inverse() * error);
+      num_poses += 1;
+    }
+    for (const auto& [id, plane] : run.graph().planes)
+      for (const Face& face : walk.faces) {
+        const Eigen::Vector3d normal = walk.T_map_world().rotation * face.normal;
+        const Eigen::Vector3d centre = walk.T_map_world() * face.centre;
+        if (normal.dot(plane.normal_map) < 0.99 || std::abs(plane.distance(centre)) > 0.1) continue;
+        Eigen::Vector3d error;
+        error << tangentBasis(plane.normal_map).transpose() * normal, normal.dot(centre - plane.centroid_map);
+        plane_nees += error.dot(plane.covariance.inverse() * error);
+        num_planes += 1;
+      }
+  }
+  EXPECT_NEAR(pose_nees / num_poses, 6.0, 3.0);
+  EXPECT_NEAR(plane_nees / num_planes, 3.0, 1.5);
+  EXPECT_EQ(num_planes, 60);
+}
+
+// Mistake 6 of earlier systems: the start heading must not matter.
+TEST(BackendPlanesTest, AnyStartHeadingGivesTheSameWalls) {
+  const Run straight(makeRingWalk({}));
+  for (const double degrees : {30.0, 45.0, 90.0, -137.0}) {
+    const Run run(makeRingWalk({.start_heading_rad = degrees * M_PI / 180}));
+    EXPECT_EQ(run.graph().planes.size(), straight.graph().planes.size()) << degrees;
+    EXPECT_EQ(labels(run.graph()).count("horizontal"), 2u);
+    EXPECT_EQ(labels(run.graph()).count("x"), 4u);
+    EXPECT_NEAR(run.ate_m, straight.ate_m, 0.01) << degrees;
+  }
+}
+
+TEST(BackendPlanesTest, AWallOneDegreeOffSquareStaysOff) {
+  const double off = M_PI / 180;
+  const RingWalk walk = makeRingWalk({.wall_off_square_rad = off});
+  const Run run(walk);
+  const Eigen::Vector3d truth = walk.T_map_world().rotation * walk.faces[0].normal;
+  double best = 10;
+  for (const auto& [id, plane] : run.graph().planes)
+    best = std::min(best, std::acos(std::min(1.0, plane.normal_map.dot(truth))));
+  EXPECT_LT(best, 0.2 * off);
+  EXPECT_LT(run.ate_m, 0.02);
+}
+
+TEST(BackendPlanesTest, TheSameInputGivesTheSameDigest) {
+  const RingWalk walk = makeRingWalk({});
+  EXPECT_EQ(Run(walk).newest.graph_digest, Run(walk).newest.graph_digest);
+}
+
+TEST(BackendPlanesTest, ASurfaceSeenOnceIsNotMapped) {
+  RingWalk walk = makeRingWalk({.laps = 0.2});
+  PlaneObservation person = walk.planes[5].planes[0];
+  person.centroid_body += 0.7 * person.normal_body;
+  walk.planes[5].planes.push_back(person);
+  const size_t num_planes = Run(makeRingWalk({.laps = 0.2})).graph().planes.size();
+  EXPECT_EQ(Run(walk).graph().planes.size(), num_planes);
+}
+
+// Two pieces of a wall are mapped apart; once what lies between is seen they are one, and nothing is lost.
+TEST(BackendPlanesTest, PiecesThatGrowTogetherAreMerged) {
+  RingWalk walk = makeRingWalk({.laps = 0.2});
+  const Face wall{{9, 0, 1.3}, {-1, 0, 0}, 6, 1.3};
+  const size_t n = walk.keyframes.size();
+  ASSERT_GE(n, 12u);
+  std::mt19937 random(4);
+  for (size_t k = 0; k < n; ++k) {
+    Face left = wall, right = wall;
+    left.centre.y() = -4;
+    right.centre.y() = 4;
+    left.half_width_m = right.half_width_m = 1.5;
+    walk.planes[k].planes.clear();
+    const SE3& T = walk.truth[k];
+    if (k < n / 2) {
+      walk.planes[k].planes = {noisy(observe(left, T), random), noisy(observe(right, T), random)};
+    } else {
+      walk.planes[k].planes = {noisy(observe(wall, T), random)};
+    }
+  }
+  const Run run(walk);
+  EXPECT_EQ(run.graph().planes.size(), 1u);
+  EXPECT_EQ(run.graph().merged_planes.size(), 1u);
+  EXPECT_EQ(run.graph().observations.size(), 2 * (n / 2) + n - n / 2);
+  EXPECT_EQ(run.graph().planes.begin()->second.num_observations,
+            static_cast<int64_t>(run.graph().observations.size()));
+}
+
+}  // namespace
+}  // namespace sgraphs
