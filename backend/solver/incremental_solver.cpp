@@ -90,6 +90,15 @@ class IncrementalSolver::Impl {
   }
   void forgetMarginals() { marginals_.reset(); }
 
+  template <typename Covariance>
+  std::map<StateId, Covariance> covariancesOf(StateKind kind) {
+    std::map<StateId, Covariance> out;
+    const std::vector<Eigen::MatrixXd> all = marginals().allCovariances();
+    for (size_t i = 0; i < all.size(); ++i)
+      if (graph.states[i].kind == kind) out.emplace(static_cast<StateId>(i), all[i]);
+    return out;
+  }
+
   StateGraph graph;
 
  private:
@@ -183,6 +192,12 @@ IncrementalSolver::StateId IncrementalSolver::addPose(const SE3& T) {
   return id;
 }
 
+IncrementalSolver::StateId IncrementalSolver::addPlane(const PlaneState& plane) {
+  const StateId id = impl_->graph.addState(StateKind::kPlane);
+  setPlane(id, plane);
+  return id;
+}
+
 IncrementalSolver::StateId IncrementalSolver::addSharedUnitVector(const Eigen::Vector3d& n) {
   const StateId id = impl_->graph.addState(StateKind::kUnitVector);
   impl_->graph.states.back().shared = true;
@@ -197,12 +212,30 @@ void IncrementalSolver::hold(StateId state) {
 IncrementalSolver::FactorId IncrementalSolver::addFactor(std::unique_ptr<ceres::CostFunction> cost,
                                                          std::vector<StateId> states,
                                                          std::optional<double> cauchy_scale) {
-  impl_->markChanged(states);
   Factor factor;
   factor.cost = std::move(cost);
   if (cauchy_scale) factor.loss = std::make_unique<ceres::CauchyLoss>(*cauchy_scale);
-  factor.states = std::move(states);
-  return impl_->graph.addFactor(std::move(factor));
+  factor.states = states;
+  const FactorId id = impl_->graph.addFactor(std::move(factor));
+  impl_->markChanged(states);
+  return id;
+}
+
+void IncrementalSolver::setEnabled(FactorId factor, bool enabled) {
+  if (this->enabled(factor) == enabled) return;
+  impl_->graph.setEnabled(factor, enabled);
+  impl_->markChanged(impl_->graph.factors[static_cast<size_t>(factor)].states);
+}
+
+bool IncrementalSolver::enabled(FactorId factor) const {
+  return impl_->graph.factors.at(static_cast<size_t>(factor)).enabled;
+}
+
+void IncrementalSolver::rebind(FactorId factor, StateId from, StateId to) {
+  impl_->graph.rebind(factor, from, to);
+  if (!enabled(factor)) return;
+  impl_->markChanged(impl_->graph.factors[static_cast<size_t>(factor)].states);
+  impl_->markChanged({from});
 }
 
 SE3 IncrementalSolver::pose(StateId state) const {
@@ -212,6 +245,15 @@ SE3 IncrementalSolver::pose(StateId state) const {
 void IncrementalSolver::setPose(StateId state, const SE3& T) {
   impl_->forgetMarginals();
   PoseManifold::store(T, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+PlaneState IncrementalSolver::plane(StateId state) const {
+  return PlaneManifold::load(impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+void IncrementalSolver::setPlane(StateId state, const PlaneState& plane) {
+  impl_->forgetMarginals();
+  PlaneManifold::store(plane, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
 }
 
 Eigen::Vector3d IncrementalSolver::unitVector(StateId state) const {
@@ -242,6 +284,23 @@ int IncrementalSolver::numResiduals(FactorId factor) const {
 std::optional<Matrix6d> IncrementalSolver::covariance(StateId pose) const {
   const std::optional<Eigen::MatrixXd> covariance = impl_->marginals().covariance(pose);
   return covariance ? std::optional<Matrix6d>(*covariance) : std::nullopt;
+}
+
+std::optional<Eigen::Matrix3d> IncrementalSolver::planeCovariance(StateId plane) const {
+  const std::optional<Eigen::MatrixXd> covariance = impl_->marginals().covariance(plane);
+  return covariance ? std::optional<Eigen::Matrix3d>(*covariance) : std::nullopt;
+}
+
+std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(const std::vector<StateId>& states) const {
+  return impl_->marginals().covariance(states);
+}
+
+std::map<IncrementalSolver::StateId, Matrix6d> IncrementalSolver::poseCovariances() const {
+  return impl_->covariancesOf<Matrix6d>(StateKind::kPose);
+}
+
+std::map<IncrementalSolver::StateId, Eigen::Matrix3d> IncrementalSolver::planeCovariances() const {
+  return impl_->covariancesOf<Eigen::Matrix3d>(StateKind::kPlane);
 }
 
 }  // namespace sgraphs
