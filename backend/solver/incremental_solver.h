@@ -21,7 +21,9 @@ struct SolverOptions {
   // What the held states at the rim of a neighbourhood would move alone is a fraction of what the chain
   // behind them would move together: in a circle of n equal links, one part in 2 n. So their steps are
   // multiplied by the number of held states, at most by this.
-  int max_leverage = 30;
+  double max_leverage = 30;
+  // Poses that see planes are held by these as well as by the chain.
+  double max_leverage_planes = 1;
   // A neighbourhood grows while that product is above this.
   double grow_step_m = 1e-4;
   double grow_step_rad = 3e-5;

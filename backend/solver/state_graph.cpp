@@ -142,6 +142,13 @@ StepSize StateGraph::newtonStep(int state) const {
   return sizeOf(state, normal.H.completeOrthogonalDecomposition().solve(normal.g));
 }
 
+StepSize StateGraph::difference(int state, const std::array<double, 7>& x) const {
+  const State& s = states[static_cast<size_t>(state)];
+  Eigen::VectorXd step(manifold(s.kind).TangentSize());
+  manifold(s.kind).Minus(s.x.data(), x.data(), step.data());
+  return sizeOf(state, step);
+}
+
 StepSize StateGraph::sizeOf(int state, const Eigen::VectorXd& step) const {
   if (states[static_cast<size_t>(state)].kind == StateKind::kPose)
     return {step.head<3>().norm(), step.tail<3>().norm()};

@@ -82,6 +82,8 @@ class StateGraph {
   // The Gauss-Newton step of one state, all others held.
   StepSize newtonStep(int state) const;
   StepSize sizeOf(int state, const Eigen::VectorXd& step) const;
+  // From x to the state.
+  StepSize difference(int state, const std::array<double, 7>& x) const;
 
  private:
   void checkStates(const Factor& factor) const;
