@@ -2,16 +2,17 @@
 
 #include <ceres/manifold.h>
 
+#include "backend/factors/plane_state.h"
 #include "backend/factors/unit_vector_manifold.h"
 
 namespace sgraphs {
 
-// Planes: [nx ny nz d] with n.(p - anchor) + d = 0, the anchor a constant of the state's owner. The tangent
-// is (tilt [rad], tilt [rad], offset [m]) with the tilts along tangentBasis(n), so that tilt and offset are
-// coupled as little as the anchor is close to where the plane was seen.
+// Planes as seven doubles, [nx ny nz offset ax ay az], see PlaneState. The tangent is (tilt [rad], tilt
+// [rad], offset [m]) with the tilts along tangentBasis(n); the anchor never moves. Being part of the state,
+// it goes along when a factor is bound to another plane.
 class PlaneManifold final : public ceres::Manifold {
  public:
-  static constexpr int kAmbientSize = 4;
+  static constexpr int kAmbientSize = 7;
   static constexpr int kTangentSize = 3;
 
   int AmbientSize() const override { return kAmbientSize; }
@@ -20,6 +21,9 @@ class PlaneManifold final : public ceres::Manifold {
   bool PlusJacobian(const double* x, double* jacobian) const override;
   bool Minus(const double* y, const double* x, double* y_minus_x) const override;
   bool MinusJacobian(const double* x, double* jacobian) const override;
+
+  static PlaneState load(const double* x);
+  static void store(const PlaneState& plane, double* x);
 };
 
 }  // namespace sgraphs

@@ -1,9 +1,11 @@
 #include "backend/solver/incremental_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "backend/solver/marginal_covariance.h"
+#include "backend/solver/region.h"
 #include "backend/solver/region_solve.h"
 #include "backend/solver/state_graph.h"
 
@@ -12,52 +14,6 @@ namespace {
 
 // Neighbourhoods begin with this many steps along factors, and grow by half as much again each time.
 constexpr int kFirstHops = 3;
-
-// The set of states that are free in a local solve.
-class Region {
- public:
-  explicit Region(const StateGraph& graph) : graph_(graph), inside_(graph.states.size(), false) {}
-
-  // Adds what is reachable from the seeds in `hops` steps over states that are neither held nor shared.
-  void grow(std::vector<int> seeds, int hops) {
-    std::vector<int> ring = keepFree(std::move(seeds));
-    for (int hop = 0; hop <= hops && !ring.empty(); ++hop) {
-      for (const int state : ring) inside_[static_cast<size_t>(state)] = true;
-      members_.insert(members_.end(), ring.begin(), ring.end());
-      ring = keepFree(neighbours(ring));
-    }
-    std::sort(members_.begin(), members_.end());
-  }
-
-  // Free states next to the region.
-  std::vector<int> rim() const { return keepFree(neighbours(members_)); }
-  const std::vector<int>& members() const { return members_; }
-
- private:
-  std::vector<int> neighbours(const std::vector<int>& of) const {
-    std::vector<int> found;
-    for (const int state : of)
-      for (const int factor : graph_.states[static_cast<size_t>(state)].factors) {
-        const std::vector<int>& states = graph_.factors[static_cast<size_t>(factor)].states;
-        found.insert(found.end(), states.begin(), states.end());
-      }
-    return found;
-  }
-  // Sorted, without repetition, and without members, held and shared states.
-  std::vector<int> keepFree(std::vector<int> ids) const {
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-    std::erase_if(ids, [&](int id) {
-      const State& state = graph_.states[static_cast<size_t>(id)];
-      return state.held || state.shared || inside_[static_cast<size_t>(id)];
-    });
-    return ids;
-  }
-
-  const StateGraph& graph_;
-  std::vector<bool> inside_;
-  std::vector<int> members_;
-};
 
 }  // namespace
 
@@ -90,6 +46,15 @@ class IncrementalSolver::Impl {
   }
   void forgetMarginals() { marginals_.reset(); }
 
+  template <typename Covariance>
+  std::map<StateId, Covariance> covariancesOf(StateKind kind) {
+    std::map<StateId, Covariance> out;
+    const std::vector<Eigen::MatrixXd> all = marginals().allCovariances();
+    for (size_t i = 0; i < all.size(); ++i)
+      if (graph.states[i].kind == kind) out.emplace(static_cast<StateId>(i), all[i]);
+    return out;
+  }
+
   StateGraph graph;
 
  private:
@@ -104,17 +69,11 @@ class IncrementalSolver::Impl {
           solveRegion(graph, region.members(), options_.max_iterations, options_.settled_step_local);
       report.iterations += outcome.iterations;
       if (!outcome.converged) return false;
-      const double leverage = leverageOver(region.members().size());
       StepSize unresolved;
-      std::vector<int> moving;
-      for (const int state : region.rim()) {
-        const StepSize alone = graph.newtonStep(state);
-        const StepSize step{leverage * alone.m, leverage * alone.rad};
-        unresolved = {std::max(unresolved.m, step.m), std::max(unresolved.rad, step.rad)};
-        if (step.m > options_.grow_step_m || step.rad > options_.grow_step_rad) moving.push_back(state);
-      }
+      const std::vector<int> moving = wouldMove(region, unresolved);
       if (moving.empty()) {
         report.free = region.members();
+        rest(region);
         drift_ = {std::hypot(drift_.m, unresolved.m), std::hypot(drift_.rad, unresolved.rad)};
         return drift_.m <= options_.drift_m && drift_.rad <= options_.drift_rad && sharedStatesRest();
       }
@@ -124,9 +83,49 @@ class IncrementalSolver::Impl {
     }
   }
 
-  double leverageOver(size_t num_free) const {
-    const auto held = static_cast<double>(graph.states.size() - num_free);
-    return std::min(held, static_cast<double>(options_.max_leverage));
+  // The held states that the region pulls at so much that they must be free too; `unresolved` is the largest
+  // step among all that were looked at.
+  std::vector<int> wouldMove(const Region& region, StepSize& unresolved) const {
+    std::vector<int> candidates = region.rim();
+    for (const int state : region.members()) {
+      if (!pullsAtObservers(state)) continue;
+      const std::vector<int> observers = region.observers(state);
+      candidates.insert(candidates.end(), observers.begin(), observers.end());
+    }
+    std::sort(candidates.begin(), candidates.end());
+    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    const double held = static_cast<double>(graph.states.size() - region.members().size());
+    std::vector<int> moving;
+    for (const int state : candidates) {
+      const StepSize alone = graph.newtonStep(state);
+      const double leverage = std::min(held, leverageOf(state));
+      const StepSize step{leverage * alone.m, leverage * alone.rad};
+      unresolved = {std::max(unresolved.m, step.m), std::max(unresolved.rad, step.rad)};
+      if (step.m > options_.grow_step_m || step.rad > options_.grow_step_rad) moving.push_back(state);
+    }
+    return moving;
+  }
+
+  double leverageOf(int state) const {
+    for (const int factor : graph.states[static_cast<size_t>(state)].factors)
+      for (const int other : graph.factors[static_cast<size_t>(factor)].states)
+        if (graph.states[static_cast<size_t>(other)].kind == StateKind::kPlane)
+          return options_.max_leverage_planes;
+    return options_.max_leverage;
+  }
+
+  // A plane carries the poses that see it along by no more than it moved itself since they were looked at.
+  bool pullsAtObservers(int state) const {
+    if (graph.states[static_cast<size_t>(state)].kind != StateKind::kPlane) return false;
+    const auto rested = rested_planes_.find(state);
+    if (rested == rested_planes_.end()) return true;
+    const StepSize moved = graph.difference(state, rested->second);
+    return moved.m > options_.grow_step_m || moved.rad > options_.grow_step_rad;
+  }
+
+  void rest(const Region& region) {
+    for (const int state : region.members())
+      if (pullsAtObservers(state)) rested_planes_[state] = graph.states[static_cast<size_t>(state)].x;
   }
 
   // A shared state takes many others along when it moves: its step is the gradient times its covariance, as
@@ -162,6 +161,9 @@ class IncrementalSolver::Impl {
     unfinished_ = !outcome.converged;
     settled_ = outcome.converged;
     drift_ = {};
+    for (const int state : report.free)
+      if (graph.states[static_cast<size_t>(state)].kind == StateKind::kPlane)
+        rested_planes_[state] = graph.states[static_cast<size_t>(state)].x;
     if (settled_) rememberSharedCovariances();
   }
 
@@ -171,7 +173,8 @@ class IncrementalSolver::Impl {
   bool settled_ = true;
   std::optional<Marginals> marginals_;
   std::vector<std::pair<int, Eigen::MatrixXd>> shared_covariances_;
-  StepSize drift_;  // left unresolved since the last whole-graph solve
+  std::map<int, std::array<double, 7>> rested_planes_;  // as they were when their observers were looked at
+  StepSize drift_;                                      // left unresolved since the last whole-graph solve
 };
 
 IncrementalSolver::IncrementalSolver(const SolverOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -180,6 +183,12 @@ IncrementalSolver::~IncrementalSolver() = default;
 IncrementalSolver::StateId IncrementalSolver::addPose(const SE3& T) {
   const StateId id = impl_->graph.addState(StateKind::kPose);
   setPose(id, T);
+  return id;
+}
+
+IncrementalSolver::StateId IncrementalSolver::addPlane(const PlaneState& plane) {
+  const StateId id = impl_->graph.addState(StateKind::kPlane);
+  setPlane(id, plane);
   return id;
 }
 
@@ -197,12 +206,30 @@ void IncrementalSolver::hold(StateId state) {
 IncrementalSolver::FactorId IncrementalSolver::addFactor(std::unique_ptr<ceres::CostFunction> cost,
                                                          std::vector<StateId> states,
                                                          std::optional<double> cauchy_scale) {
-  impl_->markChanged(states);
   Factor factor;
   factor.cost = std::move(cost);
   if (cauchy_scale) factor.loss = std::make_unique<ceres::CauchyLoss>(*cauchy_scale);
-  factor.states = std::move(states);
-  return impl_->graph.addFactor(std::move(factor));
+  factor.states = states;
+  const FactorId id = impl_->graph.addFactor(std::move(factor));
+  impl_->markChanged(states);
+  return id;
+}
+
+void IncrementalSolver::setEnabled(FactorId factor, bool enabled) {
+  if (this->enabled(factor) == enabled) return;
+  impl_->graph.setEnabled(factor, enabled);
+  impl_->markChanged(impl_->graph.factors[static_cast<size_t>(factor)].states);
+}
+
+bool IncrementalSolver::enabled(FactorId factor) const {
+  return impl_->graph.factors.at(static_cast<size_t>(factor)).enabled;
+}
+
+void IncrementalSolver::rebind(FactorId factor, StateId from, StateId to) {
+  impl_->graph.rebind(factor, from, to);
+  if (!enabled(factor)) return;
+  impl_->markChanged(impl_->graph.factors[static_cast<size_t>(factor)].states);
+  impl_->markChanged({from});
 }
 
 SE3 IncrementalSolver::pose(StateId state) const {
@@ -212,6 +239,15 @@ SE3 IncrementalSolver::pose(StateId state) const {
 void IncrementalSolver::setPose(StateId state, const SE3& T) {
   impl_->forgetMarginals();
   PoseManifold::store(T, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+PlaneState IncrementalSolver::plane(StateId state) const {
+  return PlaneManifold::load(impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+void IncrementalSolver::setPlane(StateId state, const PlaneState& plane) {
+  impl_->forgetMarginals();
+  PlaneManifold::store(plane, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
 }
 
 Eigen::Vector3d IncrementalSolver::unitVector(StateId state) const {
@@ -242,6 +278,23 @@ int IncrementalSolver::numResiduals(FactorId factor) const {
 std::optional<Matrix6d> IncrementalSolver::covariance(StateId pose) const {
   const std::optional<Eigen::MatrixXd> covariance = impl_->marginals().covariance(pose);
   return covariance ? std::optional<Matrix6d>(*covariance) : std::nullopt;
+}
+
+std::optional<Eigen::Matrix3d> IncrementalSolver::planeCovariance(StateId plane) const {
+  const std::optional<Eigen::MatrixXd> covariance = impl_->marginals().covariance(plane);
+  return covariance ? std::optional<Eigen::Matrix3d>(*covariance) : std::nullopt;
+}
+
+std::optional<Eigen::MatrixXd> IncrementalSolver::jointCovariance(const std::vector<StateId>& states) const {
+  return impl_->marginals().covariance(states);
+}
+
+std::map<IncrementalSolver::StateId, Matrix6d> IncrementalSolver::poseCovariances() const {
+  return impl_->covariancesOf<Matrix6d>(StateKind::kPose);
+}
+
+std::map<IncrementalSolver::StateId, Eigen::Matrix3d> IncrementalSolver::planeCovariances() const {
+  return impl_->covariancesOf<Eigen::Matrix3d>(StateKind::kPlane);
 }
 
 }  // namespace sgraphs

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "backend/factors/plane_state.h"
 #include "common/geometry/se3.h"
 
 namespace ceres {
@@ -19,7 +21,9 @@ struct SolverOptions {
   // What the held states at the rim of a neighbourhood would move alone is a fraction of what the chain
   // behind them would move together: in a circle of n equal links, one part in 2 n. So their steps are
   // multiplied by the number of held states, at most by this.
-  int max_leverage = 30;
+  double max_leverage = 30;
+  // Poses that see planes are held by these as well as by the chain.
+  double max_leverage_planes = 1;
   // A neighbourhood grows while that product is above this.
   double grow_step_m = 1e-4;
   double grow_step_rad = 3e-5;
@@ -55,6 +59,7 @@ class IncrementalSolver {
   ~IncrementalSolver();
 
   StateId addPose(const SE3& T);
+  StateId addPlane(const PlaneState& plane);
   // A direction shared by many factors: free in whole-graph solves only, and no path for neighbourhoods.
   StateId addSharedUnitVector(const Eigen::Vector3d& n);
   // Held states never move: the gauge.
@@ -63,9 +68,18 @@ class IncrementalSolver {
   // The cost's parameters in order. `cauchy_scale`: robust, quadratic up to about this residual norm.
   FactorId addFactor(std::unique_ptr<ceres::CostFunction> cost, std::vector<StateId> states,
                      std::optional<double> cauchy_scale = {});
+  // A disabled factor has no part in solves, neighbourhoods and covariances; it keeps its id, and chi2()
+  // still tells what its residual would be.
+  void setEnabled(FactorId factor, bool enabled);
+  bool enabled(FactorId factor) const;
+  // Binds the factor to another state of the same kind. Throws std::logic_error if it has that one already.
+  void rebind(FactorId factor, StateId from, StateId to);
 
+  // Setting a state does not call for a solve by itself: the next one starts from there.
   SE3 pose(StateId state) const;
   void setPose(StateId state, const SE3& T);
+  PlaneState plane(StateId state) const;
+  void setPlane(StateId state, const PlaneState& plane);
   Eigen::Vector3d unitVector(StateId state) const;
   void setUnitVector(StateId state, const Eigen::Vector3d& n);
 
@@ -80,9 +94,17 @@ class IncrementalSolver {
   double chi2(FactorId factor) const;
   int numResiduals(FactorId factor) const;
 
-  // Marginal covariance of a pose at the present states, all others free. Costs a factorisation of the whole
-  // graph. None if the factors leave a state undetermined.
+  // Marginal covariances at the present states, all others free; none if the factors leave a state
+  // undetermined. The first call after a change costs a factorisation of the whole graph, each further one
+  // two triangular solves by tangent direction. Zero for held states.
   std::optional<Matrix6d> covariance(StateId pose) const;
+  // Of (tilt, tilt, offset) as PlaneManifold has them, at the plane's anchor.
+  std::optional<Eigen::Matrix3d> planeCovariance(StateId plane) const;
+  // Of several states together: blocks in their order, with the cross terms.
+  std::optional<Eigen::MatrixXd> jointCovariance(const std::vector<StateId>& states) const;
+  // Of all poses, or all planes, in about the time of one factorisation. Empty if a state is undetermined.
+  std::map<StateId, Matrix6d> poseCovariances() const;
+  std::map<StateId, Eigen::Matrix3d> planeCovariances() const;
 
  private:
   class Impl;

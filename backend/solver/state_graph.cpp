@@ -1,7 +1,10 @@
 #include "backend/solver/state_graph.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 namespace sgraphs {
 
@@ -14,20 +17,67 @@ int StateGraph::addState(StateKind kind) {
 }
 
 int StateGraph::addFactor(Factor factor) {
+  checkStates(factor);
   const int id = static_cast<int>(factors.size());
-  for (const int state : factor.states) states.at(static_cast<size_t>(state)).factors.push_back(id);
   factors.push_back(std::move(factor));
+  attach(id);
   return id;
+}
+
+void StateGraph::checkStates(const Factor& factor) const {
+  const std::vector<int>& ids = factor.states;
+  const auto& sizes = factor.cost->parameter_block_sizes();
+  bool fits = ids.size() == sizes.size() && ids.size() <= kMaxStates;
+  for (size_t i = 0; fits && i < ids.size(); ++i)
+    fits = manifold(states.at(static_cast<size_t>(ids[i])).kind).AmbientSize() == sizes[i] &&
+           std::count(ids.begin(), ids.end(), ids[i]) == 1;
+  if (!fits) throw std::logic_error("solver: states do not fit the factor's cost, or one comes twice");
+}
+
+void StateGraph::attach(int factor) {
+  for (const int state : factors[static_cast<size_t>(factor)].states) {
+    std::vector<int>& of_state = states[static_cast<size_t>(state)].factors;
+    of_state.insert(std::upper_bound(of_state.begin(), of_state.end(), factor), factor);
+  }
+}
+
+void StateGraph::detach(int factor) {
+  for (const int state : factors[static_cast<size_t>(factor)].states)
+    std::erase(states[static_cast<size_t>(state)].factors, factor);
+}
+
+void StateGraph::setEnabled(int factor, bool enabled) {
+  Factor& f = factors.at(static_cast<size_t>(factor));
+  if (f.enabled == enabled) return;
+  f.enabled = enabled;
+  if (enabled)
+    attach(factor);
+  else
+    detach(factor);
+}
+
+void StateGraph::rebind(int factor, int from, int to) {
+  Factor& f = factors.at(static_cast<size_t>(factor));
+  const auto slot = std::find(f.states.begin(), f.states.end(), from);
+  if (slot == f.states.end() ||
+      states.at(static_cast<size_t>(from)).kind != states.at(static_cast<size_t>(to)).kind)
+    throw std::logic_error("solver: the factor has no such state, or the other is of another kind");
+  if (from == to) return;
+  if (std::find(f.states.begin(), f.states.end(), to) != f.states.end())
+    throw std::logic_error("solver: the factor has that state already; disable it instead");
+  if (f.enabled) detach(factor);
+  *slot = to;
+  if (f.enabled) attach(factor);
 }
 
 const ceres::Manifold& StateGraph::manifold(StateKind kind) const {
   if (kind == StateKind::kPose) return pose_manifold_;
+  if (kind == StateKind::kPlane) return plane_manifold_;
   return unit_vector_manifold_;
 }
 
 ceres::Manifold* StateGraph::manifold(StateKind kind) {
-  if (kind == StateKind::kPose) return &pose_manifold_;
-  return &unit_vector_manifold_;
+  return const_cast<ceres::Manifold*>(&std::as_const(*this).manifold(kind));
 }
 
 double StateGraph::chi2(int factor) const {
@@ -43,12 +93,11 @@ Linearised StateGraph::linearise(int factor, int only) const {
   const Factor& f = factors[static_cast<size_t>(factor)];
   Linearised out;
   out.residual.resize(f.cost->num_residuals());
-  out.jacobians.resize(f.states.size());
-  std::vector<RowMajorMatrix> ambient(f.states.size());
-  std::vector<const double*> x;
-  std::vector<double*> jacobians(f.states.size(), nullptr);
+  std::array<RowMajorMatrix, kMaxStates> ambient;
+  std::array<const double*, kMaxStates> x{};
+  std::array<double*, kMaxStates> jacobians{};
   for (size_t i = 0; i < f.states.size(); ++i) {
-    x.push_back(states[static_cast<size_t>(f.states[i])].x.data());
+    x[i] = states[static_cast<size_t>(f.states[i])].x.data();
     if (only >= 0 && f.states[i] != only) continue;
     ambient[i].resize(f.cost->num_residuals(), f.cost->parameter_block_sizes()[i]);
     jacobians[i] = ambient[i].data();
@@ -93,9 +142,18 @@ StepSize StateGraph::newtonStep(int state) const {
   return sizeOf(state, normal.H.completeOrthogonalDecomposition().solve(normal.g));
 }
 
+StepSize StateGraph::difference(int state, const std::array<double, 7>& x) const {
+  const State& s = states[static_cast<size_t>(state)];
+  Eigen::VectorXd step(manifold(s.kind).TangentSize());
+  manifold(s.kind).Minus(s.x.data(), x.data(), step.data());
+  return sizeOf(state, step);
+}
+
 StepSize StateGraph::sizeOf(int state, const Eigen::VectorXd& step) const {
   if (states[static_cast<size_t>(state)].kind == StateKind::kPose)
     return {step.head<3>().norm(), step.tail<3>().norm()};
+  if (states[static_cast<size_t>(state)].kind == StateKind::kPlane)
+    return {std::abs(step(2)), step.head<2>().norm()};
   return {0.0, step.norm()};
 }
 

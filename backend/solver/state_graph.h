@@ -9,12 +9,13 @@
 #include <memory>
 #include <vector>
 
+#include "backend/factors/plane_manifold.h"
 #include "backend/factors/pose_manifold.h"
 #include "backend/factors/unit_vector_manifold.h"
 
 namespace sgraphs {
 
-enum class StateKind { kPose, kUnitVector };
+enum class StateKind { kPose, kPlane, kUnitVector };
 
 // Ceres keeps pointers to x, so states never move in memory.
 struct State {
@@ -22,16 +23,17 @@ struct State {
   bool held = false;
   bool shared = false;
   std::array<double, 7> x{};
-  std::vector<int> factors;  // ascending
+  std::vector<int> factors;  // the enabled ones, ascending
 };
 
 struct Factor {
   std::unique_ptr<ceres::CostFunction> cost;
   std::unique_ptr<ceres::LossFunction> loss;  // null: quadratic
   std::vector<int> states;
+  bool enabled = true;  // else its states do not know of it
 };
 
-// Length of a step: translation and rotation parts, each zero for states that have none.
+// Length of a step: translation (of a plane: offset) and rotation parts, each zero for states that have none.
 struct StepSize {
   double m = 0;
   double rad = 0;
@@ -40,6 +42,7 @@ struct StepSize {
 // Small enough to need no heap: residuals by tangent or ambient coordinates of one state.
 constexpr int kMaxResiduals = 8;
 constexpr int kMaxCoordinates = 7;
+constexpr size_t kMaxStates = 3;  // of one factor
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxResiduals, 1>;
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxResiduals, kMaxCoordinates>;
 
@@ -47,7 +50,7 @@ using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMa
 // loss is concave: residual and Jacobians times sqrt(rho').
 struct Linearised {
   SmallVector residual;
-  std::vector<SmallMatrix> jacobians;  // one per state; empty where not asked for
+  std::array<SmallMatrix, kMaxStates> jacobians;  // one per state; empty where not asked for
 };
 
 // J^T J and J^T r of one state, all others held.
@@ -63,7 +66,11 @@ class StateGraph {
   std::vector<Factor> factors;
 
   int addState(StateKind kind);
+  // Throws std::logic_error if a state comes twice, does not fit the cost's parameter, or does not exist.
   int addFactor(Factor factor);
+  void setEnabled(int factor, bool enabled);
+  // The factor's state `from` becomes `to`; throws as addFactor does.
+  void rebind(int factor, int from, int to);
 
   ceres::Manifold* manifold(StateKind kind);
   const ceres::Manifold& manifold(StateKind kind) const;
@@ -75,9 +82,16 @@ class StateGraph {
   // The Gauss-Newton step of one state, all others held.
   StepSize newtonStep(int state) const;
   StepSize sizeOf(int state, const Eigen::VectorXd& step) const;
+  // From x to the state.
+  StepSize difference(int state, const std::array<double, 7>& x) const;
 
  private:
+  void checkStates(const Factor& factor) const;
+  void attach(int factor);
+  void detach(int factor);
+
   PoseManifold pose_manifold_;
+  PlaneManifold plane_manifold_;
   UnitVectorManifold unit_vector_manifold_;
 };
 

@@ -28,7 +28,7 @@ Eigen::VectorXd randomPose(std::mt19937& random) {
 }
 
 Eigen::VectorXd randomPlane(std::mt19937& random) {
-  Eigen::VectorXd x = randomVector(4, 2.0, random);
+  Eigen::VectorXd x = randomVector(PlaneManifold::kAmbientSize, 2.0, random);
   x.head<3>().normalize();
   return x;
 }
@@ -102,10 +102,44 @@ TEST(PlaneManifoldTest, TiltIsInRadiansAndOffsetInMetres) {
   std::mt19937 random(4);
   const Eigen::VectorXd x = randomPlane(random);
   const Eigen::Vector3d delta(0.03, -0.04, 0.2);
-  Eigen::Vector4d y;
+  Eigen::VectorXd y(7);
   PlaneManifold().Plus(x.data(), delta.data(), y.data());
   EXPECT_NEAR(std::acos(x.head<3>().dot(y.head<3>())), 0.05, 1e-9);
   EXPECT_NEAR(y(3) - x(3), 0.2, 1e-12);
+  EXPECT_EQ(y.tail<3>(), x.tail<3>()) << "the anchor stays";
+}
+
+TEST(PlaneStateTest, AnotherAnchorIsTheSamePlane) {
+  std::mt19937 random(6);
+  const Eigen::VectorXd x = randomPlane(random);
+  const PlaneState plane = PlaneManifold::load(x.data());
+  const Eigen::Vector3d p = randomVector(3, 5.0, random), q = randomVector(3, 5.0, random);
+  const PlaneState moved = plane.anchoredAt(p);
+  EXPECT_EQ(moved.anchor, p);
+  EXPECT_NEAR(moved.distance(q), plane.distance(q), 1e-12);
+}
+
+// The covariance of a plane about another anchor is that of the offset there: by differences of Plus.
+TEST(PlaneStateTest, CovarianceMovesWithTheAnchor) {
+  std::mt19937 random(7);
+  const Eigen::VectorXd x = randomPlane(random);
+  const PlaneState plane = PlaneManifold::load(x.data());
+  const Eigen::Vector3d p = randomVector(3, 5.0, random);
+  Eigen::Matrix3d J;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d delta = 1e-6 * Eigen::Vector3d::Unit(i);
+    Eigen::VectorXd y(7), moved(7), reference(7);
+    PlaneManifold().Plus(x.data(), delta.data(), y.data());
+    PlaneManifold::store(PlaneManifold::load(y.data()).anchoredAt(p), moved.data());
+    PlaneManifold::store(plane.anchoredAt(p), reference.data());
+    Eigen::Vector3d difference;
+    PlaneManifold().Minus(moved.data(), reference.data(), difference.data());
+    J.col(i) = difference / 1e-6;
+  }
+  const Eigen::Matrix3d root = Eigen::Map<const Eigen::Matrix3d>(randomVector(9, 0.1, random).eval().data());
+  const Eigen::Matrix3d covariance = root * root.transpose();
+  const Eigen::Matrix3d expected = J * covariance * J.transpose();
+  EXPECT_LT((covarianceAnchoredAt(plane, covariance, p) - expected).norm(), 1e-5 * expected.norm());
 }
 
 TEST(UnitVectorManifoldTest, OppositeDirectionIsHalfATurnAway) {
