@@ -198,11 +198,10 @@ void GraphBuilder::takeOver(const std::vector<StateId>& states) {
     if (found == plane_of_state_.end()) continue;
     PlaneNode& plane = graph_.planes.at(found->second);
     const PlaneState value = solver_.plane(state);
-    // Extents lie in the plane: they follow it.
-    const Polygon2d extent = extentOf(plane);
     turnNormal(plane, value.normal);
     plane.offset_m = value.offset_m;
-    sgraphs::setExtent(plane, extent);
+    // Extents lie in the plane: they follow it. Taken in its new axes, which may have flipped.
+    sgraphs::setExtent(plane, extentOf(plane));
   }
   if (up_state_ >= 0) graph_.up_map = solver_.unitVector(up_state_);
 }

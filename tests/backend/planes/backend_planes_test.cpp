@@ -1,7 +1,9 @@
 // The backend with planes, on a ring of corridors with exact truth.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <set>
 
 #include "backend/backend.h"
@@ -13,15 +15,16 @@ namespace {
 
 using testing_support::Face;
 using testing_support::makeRingWalk;
+using testing_support::noisy;
 using testing_support::RingOptions;
 using testing_support::RingWalk;
 
-struct Run {
+struct WholeRun {
   Backend backend{BackendConfig{}};
   RoundOutput newest;
   double ate_m = 0;
 
-  explicit Run(const RingWalk& walk, bool with_planes = true) {
+  explicit WholeRun(const RingWalk& walk, bool with_planes = true) {
     int64_t round = 0;
     for (size_t k = 0; k < walk.keyframes.size(); ++k) {
       RoundInput input{.round = round++, .time = walk.keyframes[k].time, .keyframe = walk.keyframes[k]};
@@ -31,12 +34,13 @@ struct Run {
     for (int i = 0; i < 3; ++i)
       newest = backend.step({.round = round++, .time = walk.keyframes.back().time, .keyframe = {}});
     backend.graph().check();
-    double sum = 0;
-    for (const auto& [id, node] : backend.graph().keyframes)
-      sum += (node.T_map_body.translation -
-              (walk.T_map_world() * walk.truth[static_cast<size_t>(id.value)]).translation)
-                 .squaredNorm();
-    ate_m = std::sqrt(sum / static_cast<double>(walk.keyframes.size()));
+    Eigen::Matrix3Xd estimated(3, walk.truth.size()), truth(3, walk.truth.size());
+    for (const auto& [id, node] : backend.graph().keyframes) {
+      estimated.col(id.value) = node.T_map_body.translation;
+      truth.col(id.value) = walk.truth[static_cast<size_t>(id.value)].translation;
+    }
+    const Eigen::Isometry3d aligned(Eigen::umeyama(estimated, truth, false));
+    ate_m = std::sqrt((aligned * estimated - truth).colwise().squaredNorm().mean());
   }
   const SituationalGraph& graph() const { return backend.graph(); }
 };
@@ -49,7 +53,7 @@ std::multiset<std::string> labels(const SituationalGraph& graph) {
 
 TEST(BackendPlanesTest, EveryFaceIsOnePlaneAndTheLapCloses) {
   const RingWalk walk = makeRingWalk({});
-  const Run with(walk), without(walk, false);
+  const WholeRun with(walk), without(walk, false);
   EXPECT_EQ(with.graph().planes.size(), walk.faces.size());
   EXPECT_LT(with.ate_m, 0.02);
   EXPECT_LT(with.ate_m, 0.3 * without.ate_m);
@@ -64,7 +68,7 @@ TEST(BackendPlanesTest, EveryFaceIsOnePlaneAndTheLapCloses) {
 }
 
 TEST(BackendPlanesTest, EveryKindOfFactorReachesTheSolver) {
-  const Run run(makeRingWalk({}));
+  const WholeRun run(makeRingWalk({}));
   const auto statistics = run.backend.factorStatistics();
   const SituationalGraph& graph = run.graph();
   EXPECT_EQ(statistics.at("observes").count, static_cast<int64_t>(graph.observations.size()));
@@ -80,7 +84,7 @@ TEST(BackendPlanesTest, CovariancesAreCalibrated) {
   double pose_nees = 0, plane_nees = 0, num_poses = 0, num_planes = 0;
   for (uint32_t seed = 1; seed <= 6; ++seed) {
     const RingWalk walk = makeRingWalk({.seed = seed});
-    const Run run(walk);
+    const WholeRun run(walk);
     for (const auto& [id, covariance] : run.backend.keyframeCovariances()) {
       const SE3 truth = walk.T_map_world() * walk.truth[static_cast<size_t>(id.value)];
       const Vector6d error = se3Log(run.graph().keyframes.at(id).T_map_body.inverse() * truth);
@@ -105,9 +109,9 @@ TEST(BackendPlanesTest, CovariancesAreCalibrated) {
 
 // Mistake 6 of earlier systems: the start heading must not matter.
 TEST(BackendPlanesTest, AnyStartHeadingGivesTheSameWalls) {
-  const Run straight(makeRingWalk({}));
+  const WholeRun straight(makeRingWalk({}));
   for (const double degrees : {30.0, 45.0, 90.0, -137.0}) {
-    const Run run(makeRingWalk({.start_heading_rad = degrees * M_PI / 180}));
+    const WholeRun run(makeRingWalk({.start_heading_rad = degrees * M_PI / 180}));
     EXPECT_EQ(run.graph().planes.size(), straight.graph().planes.size()) << degrees;
     EXPECT_EQ(labels(run.graph()).count("horizontal"), 2u);
     EXPECT_EQ(labels(run.graph()).count("x"), 4u);
@@ -118,7 +122,7 @@ TEST(BackendPlanesTest, AnyStartHeadingGivesTheSameWalls) {
 TEST(BackendPlanesTest, AWallOneDegreeOffSquareStaysOff) {
   const double off = M_PI / 180;
   const RingWalk walk = makeRingWalk({.wall_off_square_rad = off});
-  const Run run(walk);
+  const WholeRun run(walk);
   const Eigen::Vector3d truth = walk.T_map_world().rotation * walk.faces[0].normal;
   double best = 10;
   for (const auto& [id, plane] : run.graph().planes)
@@ -129,7 +133,7 @@ TEST(BackendPlanesTest, AWallOneDegreeOffSquareStaysOff) {
 
 TEST(BackendPlanesTest, TheSameInputGivesTheSameDigest) {
   const RingWalk walk = makeRingWalk({});
-  EXPECT_EQ(Run(walk).newest.graph_digest, Run(walk).newest.graph_digest);
+  EXPECT_EQ(WholeRun(walk).newest.graph_digest, WholeRun(walk).newest.graph_digest);
 }
 
 TEST(BackendPlanesTest, ASurfaceSeenOnceIsNotMapped) {
@@ -137,8 +141,8 @@ TEST(BackendPlanesTest, ASurfaceSeenOnceIsNotMapped) {
   PlaneObservation person = walk.planes[5].planes[0];
   person.centroid_body += 0.7 * person.normal_body;
   walk.planes[5].planes.push_back(person);
-  const size_t num_planes = Run(makeRingWalk({.laps = 0.2})).graph().planes.size();
-  EXPECT_EQ(Run(walk).graph().planes.size(), num_planes);
+  const size_t num_planes = WholeRun(makeRingWalk({.laps = 0.2})).graph().planes.size();
+  EXPECT_EQ(WholeRun(walk).graph().planes.size(), num_planes);
 }
 
 // Two pieces of a wall are mapped apart; once what lies between is seen they are one, and nothing is lost.
@@ -161,7 +165,7 @@ TEST(BackendPlanesTest, PiecesThatGrowTogetherAreMerged) {
       walk.planes[k].planes = {noisy(observe(wall, T), random)};
     }
   }
-  const Run run(walk);
+  const WholeRun run(walk);
   EXPECT_EQ(run.graph().planes.size(), 1u);
   EXPECT_EQ(run.graph().merged_planes.size(), 1u);
   EXPECT_EQ(run.graph().observations.size(), 2 * (n / 2) + n - n / 2);
