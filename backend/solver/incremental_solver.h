@@ -31,7 +31,7 @@ struct SolverOptions {
   // and what shared states (`up`) would move: more than this calls for a whole-graph solve.
   double drift_m = 1e-3;
   double drift_rad = 1e-4;
-  double shared_drift_rad = 1e-4;
+  double shared_drift_rad = 2.5e-4;
 
   // Solves are done when the root mean square of their steps [m, rad] is below this.
   double settled_step_local = 1e-7;

@@ -180,15 +180,9 @@ void PlaneRun::addStructure(int plane) {
     add([] { return FacesCost::Create(kStructureSigma_rad); }, {state, other});
 }
 
-namespace {
-
-using Block = std::array<double, 7>;
-
-}  // namespace
-
 PlaneRun::Distance PlaneRun::distanceFromBatch() const {
   ceres::Problem problem;
-  std::vector<Block> blocks(poses_.size() + planes_.size() + 1);
+  std::vector<std::array<double, 7>> blocks(poses_.size() + planes_.size() + 1);
   std::vector<double*> block_of_state(blocks.size(), nullptr);
   size_t used = 0;
   const auto put = [&](int state, int size, ceres::Manifold* manifold, const auto& store) {
