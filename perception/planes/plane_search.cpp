@@ -1,0 +1,106 @@
+#include "perception/planes/plane_search.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sgraphs {
+namespace {
+
+// Widening of the cone in which a facet's normal is believed, and its largest half thickness.
+constexpr double kConeSlope = 0.03;
+constexpr double kMaxCone_m = 0.20;
+constexpr double kFirstRadius_m = 0.8;
+constexpr int kGrowthSteps = 6;
+
+}  // namespace
+
+PlaneSearch::PlaneSearch(const std::vector<Facet>& facets, const PlaneSearchConfig& config,
+                         double min_area_m2, uint64_t seed)
+    : facets_(facets),
+      config_(config),
+      min_area_m2_(min_area_m2),
+      min_cos_(std::cos(config.normal_angle_rad)),
+      random_state_(seed),
+      state_(facets.size(), State::kFree) {
+  for (size_t i = 0; i < facets.size(); ++i) free_.push_back(static_cast<int32_t>(i));
+}
+
+// SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", 2014).
+uint64_t PlaneSearch::random() {
+  uint64_t z = (random_state_ += 0x9E3779B97F4A7C15ull);
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+  return z ^ (z >> 31);
+}
+
+void PlaneSearch::take(int32_t facet) {
+  state_[static_cast<size_t>(facet)] = State::kTaken;
+}
+
+bool PlaneSearch::agrees(const Facet& facet, const Eigen::Vector3d& normal) const {
+  return facet.normal.dot(normal) >= min_cos_;
+}
+
+double PlaneSearch::score(const Facet& seed) const {
+  double area_m2 = 0;
+  for (const int32_t i : free_) {
+    const Facet& facet = facets_[static_cast<size_t>(i)];
+    const Eigen::Vector3d delta = facet.mean - seed.mean;
+    const double height = std::abs(seed.normal.dot(delta));
+    if (height > kMaxCone_m || !agrees(facet, seed.normal)) continue;
+    if (height <= config_.distance_m + kConeSlope * delta.norm()) area_m2 += facet.area_m2;
+  }
+  return area_m2;
+}
+
+Hypothesis PlaneSearch::grow(const Facet& seed) const {
+  Hypothesis plane{seed.normal, -seed.normal.dot(seed.mean)};
+  double radius_m = kFirstRadius_m;
+  for (int step = 0; step < kGrowthSteps; ++step, radius_m *= 2) {
+    PlaneMoments moments;
+    int facets = 0;
+    for (const int32_t i : free_) {
+      const Facet& facet = facets_[static_cast<size_t>(i)];
+      if (std::abs(plane.distance(facet.mean)) > config_.distance_m || !agrees(facet, plane.normal)) continue;
+      if ((facet.mean - seed.mean).squaredNorm() > radius_m * radius_m) continue;
+      moments.add(facet.moments);
+      ++facets;
+    }
+    if (facets < 3) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(moments.covariance());
+    Eigen::Vector3d normal = eigen.eigenvectors().col(0);
+    if (normal.dot(plane.normal) < 0) normal = -normal;
+    plane = {normal, -normal.dot(moments.mean())};
+  }
+  return plane;
+}
+
+std::optional<Hypothesis> PlaneSearch::next() {
+  for (int failures = 0; failures < config_.max_failures; ++failures) {
+    std::erase_if(free_, [this](int32_t i) { return state_[static_cast<size_t>(i)] == State::kTaken; });
+    seeds_.clear();
+    for (const int32_t i : free_)
+      if (state_[static_cast<size_t>(i)] == State::kFree) seeds_.push_back(i);
+    if (seeds_.empty()) return std::nullopt;
+    double best_m2 = 0;
+    int32_t best = -1;
+    for (int h = 0; h < config_.hypotheses; ++h) {
+      const int32_t seed = seeds_[random() % seeds_.size()];
+      if (state_[static_cast<size_t>(seed)] != State::kFree) continue;  // drawn and found wanting
+      const double area_m2 = score(facets_[static_cast<size_t>(seed)]);
+      if (area_m2 < min_area_m2_) state_[static_cast<size_t>(seed)] = State::kNoSeed;
+      if (area_m2 > best_m2) {
+        best_m2 = area_m2;
+        best = seed;
+      }
+    }
+    if (best_m2 < min_area_m2_) continue;
+    state_[static_cast<size_t>(best)] = State::kNoSeed;
+    return grow(facets_[static_cast<size_t>(best)]);
+  }
+  return std::nullopt;
+}
+
+}  // namespace sgraphs
