@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "perception/odometry/voxel_index.h"
@@ -11,19 +12,17 @@ namespace sgraphs {
 namespace {
 
 constexpr int kLevels = 4;  // of cell sizes
-// Returns nearer than this to their viewpoint have no direction of view.
+// Returns nearer than this to their viewpoint have no direction of view; farther ones are none of a LiDAR.
 constexpr double kMinRange_m = 1e-3;
+constexpr double kMaxRange_m = 300;
+constexpr double kMaxPlace_m = 10'000;  // from the keyframe
 
 struct Cell {
-  Eigen::Vector3i at;
-  int level;
+  uint64_t key = 0;
+  int level = 0;
   PlaneMoments moments;
-  std::vector<int32_t> points;
+  int32_t facets[2] = {-1, -1};  // seen from the normal's side and from the other
 };
-
-uint64_t keyOf(const Eigen::Vector3i& at, int level) {
-  return VoxelIndex::pack(at.x(), at.y(), at.z(), static_cast<uint64_t>(level));
-}
 
 std::vector<ViewedPoint> viewedPoints(const Keyframe& keyframe) {
   std::vector<Eigen::Vector3d> viewpoints;
@@ -37,50 +36,68 @@ std::vector<ViewedPoint> viewedPoints(const Keyframe& keyframe) {
     point.position = p.position_body.cast<double>();
     const Eigen::Vector3d ray = viewpoints[p.scan] - point.position;
     point.range_m = ray.norm();
-    if (!(point.range_m > kMinRange_m) || !std::isfinite(point.range_m)) continue;
+    if (!(point.range_m > kMinRange_m && point.range_m < kMaxRange_m &&
+          point.position.cwiseAbs().maxCoeff() < kMaxPlace_m))
+      continue;
     point.to_viewpoint = ray / point.range_m;
     point.count = p.count;
+    point.scan = p.scan;
     points.push_back(point);
   }
   return points;
 }
 
-class Grid {
+class CellGrid {
  public:
-  explicit Grid(const FacetConfig& config) : config_(config) { cells.reserve(4096); }
+  explicit CellGrid(const FacetConfig& config) : config_(config) { cells.reserve(8192); }
 
   double sizeOf(int level) const { return config_.cell_m * (1 << level); }
 
-  void add(const ViewedPoint& point, int32_t index) {
+  void add(const ViewedPoint& point) {
     int level = 0;
     while (level + 1 < kLevels && point.range_m > config_.cell_range_m * (1 << level)) ++level;
-    const Eigen::Vector3i at = (point.position / sizeOf(level)).array().floor().matrix().cast<int>();
-    const uint64_t key = keyOf(at, level);
+    const Eigen::Vector3d at = (point.position / sizeOf(level)).array().floor();
+    const uint64_t key = VoxelIndex::pack(static_cast<int64_t>(at.x()), static_cast<int64_t>(at.y()),
+                                          static_cast<int64_t>(at.z()), static_cast<uint64_t>(level));
     int32_t i = index_.find(key);
     if (i < 0) {
       i = static_cast<int32_t>(cells.size());
       index_.insert(key, i);
-      cells.push_back({at, level, {}, {}});
+      cells.push_back({key, level, {}});
     }
-    Cell& cell = cells[static_cast<size_t>(i)];
-    cell.moments.add(point.position, 1.0);
-    cell.points.push_back(index);
+    cells[static_cast<size_t>(i)].moments.add(point.position, 1.0);
+    cell_of_point.push_back(i);
   }
 
-  PlaneMoments around(const Cell& cell) const {
-    PlaneMoments sum;
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz) {
-          const int32_t i = index_.find(keyOf(cell.at + Eigen::Vector3i(dx, dy, dz), cell.level));
-          if (i >= 0) sum.add(cells[static_cast<size_t>(i)].moments);
+  // Calls visit(cell, moments of it and its 26 neighbours) for each cell. In the order of keys the cells of a
+  // column stand together, and each of the nine columns around a cell is followed by a cursor of its own.
+  template <typename Visit>
+  void forEachNeighbourhood(Visit visit) {
+    std::vector<int32_t> order(cells.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [this](int32_t a, int32_t b) { return at(a).key < at(b).key; });
+    size_t cursors[9] = {};
+    for (const int32_t i : order) {
+      PlaneMoments sum;
+      size_t* cursor = cursors;
+      for (const uint64_t dx : {~uint64_t{0}, uint64_t{0}, uint64_t{1}})
+        for (const uint64_t dy : {~uint64_t{0}, uint64_t{0}, uint64_t{1}}) {
+          const uint64_t middle = at(i).key + (dx << 40) + (dy << 20);
+          while (*cursor < order.size() && at(order[*cursor]).key < middle - 1) ++*cursor;
+          for (size_t k = *cursor; k < order.size() && at(order[k]).key <= middle + 1; ++k)
+            sum.add(at(order[k]).moments);
+          ++cursor;
         }
-    return sum;
+      visit(at(i), sum);
+    }
   }
 
   std::vector<Cell> cells;
+  std::vector<int32_t> cell_of_point;
 
  private:
+  Cell& at(int32_t i) { return cells[static_cast<size_t>(i)]; }
+
   FacetConfig config_;
   VoxelIndex index_;
 };
@@ -103,25 +120,28 @@ std::optional<Eigen::Vector3d> normalOf(const PlaneMoments& moments, const Facet
 FacetCloud makeFacets(const Keyframe& keyframe, const FacetConfig& config) {
   FacetCloud cloud;
   cloud.points = viewedPoints(keyframe);
-  Grid grid(config);
-  for (size_t i = 0; i < cloud.points.size(); ++i) grid.add(cloud.points[i], static_cast<int32_t>(i));
-  for (const Cell& cell : grid.cells) {
-    const std::optional<Eigen::Vector3d> normal = normalOf(grid.around(cell), config);
-    if (!normal) continue;
-    int32_t facet_of_side[2] = {-1, -1};
-    for (const int32_t i : cell.points) {
-      ViewedPoint& point = cloud.points[static_cast<size_t>(i)];
-      const bool back = normal->dot(point.to_viewpoint) < 0;
-      int32_t& facet = facet_of_side[back];
-      if (facet < 0) {
-        facet = static_cast<int32_t>(cloud.facets.size());
-        cloud.facets.emplace_back();
-        cloud.facets.back().normal = back ? Eigen::Vector3d(-*normal) : *normal;
-        cloud.facets.back().area_m2 = grid.sizeOf(cell.level) * grid.sizeOf(cell.level);
-      }
-      point.facet = facet;
-      cloud.facets[static_cast<size_t>(facet)].moments.add(point.position, 1.0);
+  CellGrid grid(config);
+  for (const ViewedPoint& point : cloud.points) grid.add(point);
+  std::vector<Eigen::Vector3d> normals(grid.cells.size(), Eigen::Vector3d::Zero());
+  grid.forEachNeighbourhood([&](const Cell& cell, const PlaneMoments& moments) {
+    if (const auto normal = normalOf(moments, config))
+      normals[static_cast<size_t>(&cell - grid.cells.data())] = *normal;
+  });
+  for (size_t i = 0; i < cloud.points.size(); ++i) {
+    ViewedPoint& point = cloud.points[i];
+    const auto c = static_cast<size_t>(grid.cell_of_point[i]);
+    Cell& cell = grid.cells[c];
+    const double facing = normals[c].dot(point.to_viewpoint);
+    if (facing == 0) continue;  // no normal
+    int32_t& facet = cell.facets[facing < 0];
+    if (facet < 0) {
+      facet = static_cast<int32_t>(cloud.facets.size());
+      const double size_m = grid.sizeOf(cell.level);
+      cloud.facets.push_back(
+          {{}, Eigen::Vector3d::Zero(), facing < 0 ? -normals[c] : normals[c], size_m * size_m});
     }
+    point.facet = facet;
+    cloud.facets[static_cast<size_t>(facet)].moments.add(point.position, 1.0);
   }
   for (Facet& facet : cloud.facets) facet.mean = facet.moments.mean();
   return cloud;

@@ -15,7 +15,8 @@ struct ViewedPoint {
   Eigen::Vector3d to_viewpoint = Eigen::Vector3d::UnitX();  // unit
   double range_m = 0;                                       // from the viewpoint
   int count = 1;                                            // raw points
-  int32_t facet = -1;                                       // into FacetCloud::facets; -1: no normal
+  uint8_t scan = 0;
+  int32_t facet = -1;  // into FacetCloud::facets; -1: no normal
 };
 
 // Sums that a plane can be fitted to.

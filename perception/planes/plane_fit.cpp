@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/geometry/tangent_basis.h"
@@ -24,12 +25,30 @@ double biweight(double residual, double width) {
   return std::abs(x) >= 1 ? 0 : (1 - x * x) * (1 - x * x);
 }
 
+// Of the keyframe's own pose in the cloud that its scans were put together to: translation t and rotation r
+// of the cloud turn the normal by r x n and move the plane at the centroid c by n.t + (c x n).r.
+Eigen::Matrix3d floorOf(const PlaneFit& fit, const TangentBasis& axes, const PlaneNoiseConfig& noise) {
+  const Eigen::Vector3d& n = fit.plane.normal;
+  Eigen::Matrix<double, 3, 6> J;
+  J.row(0) << 0, 0, 0, n.cross(axes.col(0)).transpose();
+  J.row(1) << 0, 0, 0, n.cross(axes.col(1)).transpose();
+  J.row(2) << n.transpose(), fit.centroid.cross(n).transpose();
+  Eigen::Matrix<double, 6, 1> sigma;
+  sigma << noise.offset_floor_m, noise.offset_floor_m, noise.height_floor_m,
+      Eigen::Vector3d::Constant(noise.tilt_floor_rad);
+  // An exact cloud without floors still is no perfect knowledge: the covariance stays regular.
+  return J * sigma.cwiseAbs2().asDiagonal() * J.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
+}
+
 // Normal equations of (tilt_u, tilt_v, offset) at the centroid: a point's distance from the true plane is
-// residual + a tilt_u + b tilt_v - offset, with (a, b) the point's place along (u, v).
+// residual + a tilt_u + b tilt_v - offset, with (a, b) the point's place along (u, v). Beside them each
+// scan's own gradient: where the points of a scan err together, it does not average out within the scan.
 void addCovariance(const std::vector<ViewedPoint>& points, std::span<const int32_t> members,
                    double distance_m, const PlaneNoiseConfig& noise, PlaneFit& fit) {
   const TangentBasis axes = tangentBasis(fit.plane.normal);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  std::array<Eigen::Vector3d, 256> gradient_of_scan;
+  gradient_of_scan.fill(Eigen::Vector3d::Zero());
   double chi2 = 0, freedom = 0, squares = 0;
   for (const int32_t i : members) {
     const ViewedPoint& point = points[static_cast<size_t>(i)];
@@ -40,19 +59,18 @@ void addCovariance(const std::vector<ViewedPoint>& points, std::span<const int32
     Eigen::Vector3d J;
     J << axes.transpose() * (point.position - fit.centroid), -1.0;
     information += (weight * J) * J.transpose();
+    gradient_of_scan[point.scan] += (weight * residual) * J;
     chi2 += weight * residual * residual;
     squares += robust * residual * residual;
     freedom += robust;
   }
   const Eigen::LLT<Eigen::Matrix3d> llt(information);
   if (freedom < kMinFreedom || llt.info() != Eigen::Success) return;
-  const double variance = noise.scale * chi2 / (freedom - 3);
-  fit.covariance = variance * llt.solve(Eigen::Matrix3d::Identity());
+  Eigen::Matrix3d scatter = noise.scale * chi2 / (freedom - 3) * information;
+  for (const Eigen::Vector3d& gradient : gradient_of_scan) scatter += gradient * gradient.transpose();
+  const Eigen::Matrix3d inverse = llt.solve(Eigen::Matrix3d::Identity());
+  fit.covariance = inverse * scatter * inverse + floorOf(fit, axes, noise);
   fit.covariance = (0.5 * (fit.covariance + fit.covariance.transpose())).eval();
-  const double tilt = noise.tilt_floor_rad * noise.tilt_floor_rad,
-               offset = noise.offset_floor_m * noise.offset_floor_m;
-  // An exact cloud without floors still is no perfect knowledge: the covariance stays regular.
-  fit.covariance.diagonal() += Eigen::Vector3d(tilt, tilt, offset).cwiseMax(1e-12);
   fit.rms_m = std::sqrt(squares / freedom);
   fit.valid = fit.covariance.allFinite();
 }

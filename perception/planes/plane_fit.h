@@ -23,7 +23,8 @@ struct PlaneFit {
 // surface, averaged over their number, and an error that all raw points of the voxel share.
 //
 // Covariance: inverse of the normal equations, times the residuals' own variance (so a noisier sensor than
-// expected says so), times `scale`, plus the floors.
+// expected says so), times `scale`; plus what the points of each scan err together (clustered "sandwich"
+// estimate, Liang and Zeger 1986); plus the floors.
 PlaneFit fitPlane(const std::vector<ViewedPoint>& points, std::span<const int32_t> members,
                   const Hypothesis& start, double distance_m, const PlaneNoiseConfig& noise);
 

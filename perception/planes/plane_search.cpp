@@ -9,8 +9,8 @@ namespace sgraphs {
 namespace {
 
 // Widening of the cone in which a facet's normal is believed, and its largest half thickness.
-constexpr double kConeSlope = 0.03;
-constexpr double kMaxCone_m = 0.20;
+constexpr float kConeSlope = 0.03f;
+constexpr float kMaxCone_m = 0.20f;
 constexpr double kFirstRadius_m = 0.8;
 constexpr int kGrowthSteps = 6;
 
@@ -24,7 +24,9 @@ PlaneSearch::PlaneSearch(const std::vector<Facet>& facets, const PlaneSearchConf
       min_cos_(std::cos(config.normal_angle_rad)),
       random_state_(seed),
       state_(facets.size(), State::kFree) {
-  for (size_t i = 0; i < facets.size(); ++i) free_.push_back(static_cast<int32_t>(i));
+  for (size_t i = 0; i < facets.size(); ++i)
+    free_.push_back({facets[i].mean.cast<float>(), facets[i].normal.cast<float>(),
+                     static_cast<float>(facets[i].area_m2), static_cast<int32_t>(i)});
 }
 
 // SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", 2014).
@@ -43,14 +45,16 @@ bool PlaneSearch::agrees(const Facet& facet, const Eigen::Vector3d& normal) cons
   return facet.normal.dot(normal) >= min_cos_;
 }
 
-double PlaneSearch::score(const Facet& seed) const {
+double PlaneSearch::score(const Candidate& seed) const {
+  const auto min_cos = static_cast<float>(min_cos_), gate_m = static_cast<float>(config_.distance_m);
   double area_m2 = 0;
-  for (const int32_t i : free_) {
-    const Facet& facet = facets_[static_cast<size_t>(i)];
-    const Eigen::Vector3d delta = facet.mean - seed.mean;
-    const double height = std::abs(seed.normal.dot(delta));
-    if (height > kMaxCone_m || !agrees(facet, seed.normal)) continue;
-    if (height <= config_.distance_m + kConeSlope * delta.norm()) area_m2 += facet.area_m2;
+  for (const Candidate& facet : free_) {
+    if (facet.normal.dot(seed.normal) < min_cos) continue;
+    const Eigen::Vector3f delta = facet.mean - seed.mean;
+    const float height = std::abs(seed.normal.dot(delta));
+    if (height > kMaxCone_m) continue;
+    const float above = std::max(height - gate_m, 0.0f);
+    if (above * above <= kConeSlope * kConeSlope * delta.squaredNorm()) area_m2 += facet.area_m2;
   }
   return area_m2;
 }
@@ -61,8 +65,8 @@ Hypothesis PlaneSearch::grow(const Facet& seed) const {
   for (int step = 0; step < kGrowthSteps; ++step, radius_m *= 2) {
     PlaneMoments moments;
     int facets = 0;
-    for (const int32_t i : free_) {
-      const Facet& facet = facets_[static_cast<size_t>(i)];
+    for (const Candidate& candidate : free_) {
+      const Facet& facet = facets_[static_cast<size_t>(candidate.facet)];
       if (std::abs(plane.distance(facet.mean)) > config_.distance_m || !agrees(facet, plane.normal)) continue;
       if ((facet.mean - seed.mean).squaredNorm() > radius_m * radius_m) continue;
       moments.add(facet.moments);
@@ -78,27 +82,28 @@ Hypothesis PlaneSearch::grow(const Facet& seed) const {
 }
 
 std::optional<Hypothesis> PlaneSearch::next() {
+  const auto state = [this](const Candidate& c) -> State& { return state_[static_cast<size_t>(c.facet)]; };
+  std::erase_if(free_, [&](const Candidate& c) { return state(c) == State::kTaken; });
   for (int failures = 0; failures < config_.max_failures; ++failures) {
-    std::erase_if(free_, [this](int32_t i) { return state_[static_cast<size_t>(i)] == State::kTaken; });
     seeds_.clear();
-    for (const int32_t i : free_)
-      if (state_[static_cast<size_t>(i)] == State::kFree) seeds_.push_back(i);
+    for (size_t i = 0; i < free_.size(); ++i)
+      if (state(free_[i]) == State::kFree) seeds_.push_back(i);
     if (seeds_.empty()) return std::nullopt;
     double best_m2 = 0;
-    int32_t best = -1;
+    const Candidate* best = nullptr;
     for (int h = 0; h < config_.hypotheses; ++h) {
-      const int32_t seed = seeds_[random() % seeds_.size()];
-      if (state_[static_cast<size_t>(seed)] != State::kFree) continue;  // drawn and found wanting
-      const double area_m2 = score(facets_[static_cast<size_t>(seed)]);
-      if (area_m2 < min_area_m2_) state_[static_cast<size_t>(seed)] = State::kNoSeed;
+      const Candidate& seed = free_[seeds_[random() % seeds_.size()]];
+      if (state(seed) != State::kFree) continue;  // drawn and found wanting
+      const double area_m2 = score(seed);
+      if (area_m2 < min_area_m2_) state(seed) = State::kNoSeed;
       if (area_m2 > best_m2) {
         best_m2 = area_m2;
-        best = seed;
+        best = &seed;
       }
     }
     if (best_m2 < min_area_m2_) continue;
-    state_[static_cast<size_t>(best)] = State::kNoSeed;
-    return grow(facets_[static_cast<size_t>(best)]);
+    state(*best) = State::kNoSeed;
+    return grow(facets_[static_cast<size_t>(best->facet)]);
   }
   return std::nullopt;
 }

@@ -37,7 +37,14 @@ class PlaneSearch {
  private:
   enum class State : uint8_t { kFree, kNoSeed, kTaken };
 
-  double score(const Facet& seed) const;
+  // What scoring reads of a facet that is not taken: it is the inner loop of everything.
+  struct Candidate {
+    Eigen::Vector3f mean, normal;
+    float area_m2;
+    int32_t facet;
+  };
+
+  double score(const Candidate& seed) const;
   Hypothesis grow(const Facet& seed) const;
   bool agrees(const Facet& facet, const Eigen::Vector3d& normal) const;
   uint64_t random();
@@ -47,8 +54,8 @@ class PlaneSearch {
   double min_area_m2_, min_cos_;
   uint64_t random_state_;
   std::vector<State> state_;
-  std::vector<int32_t> free_;   // not taken, in order
-  std::vector<int32_t> seeds_;  // free and not yet used as a seed
+  std::vector<Candidate> free_;  // not taken, in order
+  std::vector<size_t> seeds_;    // into free_: those not yet used as a seed
 };
 
 }  // namespace sgraphs

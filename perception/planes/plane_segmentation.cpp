@@ -97,7 +97,7 @@ class Run {
     const TangentBasis axes = gridAxes(plane.normal);
     const std::vector<Eigen::Vector2d> core = project(members.core, axes),
                                        fringe = project(members.fringe, axes);
-    const int radius = static_cast<int>(std::lround(0.5 * config.link_m / config.grid_m));
+    const int radius = std::max(1, static_cast<int>(std::lround(0.5 * config.link_m / config.grid_m)));
     PlaneGrid linked(core, config.grid_m, radius + 1);
     PlaneGrid near = linked;
     linked.dilate(radius);

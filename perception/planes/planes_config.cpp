@@ -36,8 +36,10 @@ void PlaneNoiseConfig::visit(ConfigVisitor& v) {
   v.field("voxel_sigma_m", voxel_sigma_m, 0.0, 0.5, "Error that the raw points of one voxel share");
   v.field("scale", scale, 0.1, 1e4, "Factor on the covariance by the points' scatter: neighbours err alike");
   v.field("offset_floor_m", offset_floor_m, 0.0, 1.0,
-          "Added to it in quadrature: the cloud's own distortion");
-  v.field("tilt_floor_rad", tilt_floor_rad, 0.0, 1.0, "Added to it in quadrature, per direction of tilt");
+          "Place of a keyframe in its own cloud, per horizontal direction of the body");
+  v.field("height_floor_m", height_floor_m, 0.0, 1.0,
+          "The same in height: few rings see floor or ceiling while the body bobs");
+  v.field("tilt_floor_rad", tilt_floor_rad, 0.0, 1.0, "Attitude of a keyframe in its own cloud, per axis");
 }
 
 void PlanesConfig::visit(ConfigVisitor& v) {

@@ -43,8 +43,9 @@ struct PlaneNoiseConfig {
   double range_sigma_m = 0.015;
   double voxel_sigma_m = 0.005;
   double scale = 3.0;
-  double offset_floor_m = 0.002;
-  double tilt_floor_rad = 0.001;
+  double offset_floor_m = 0.0015;
+  double height_floor_m = 0.005;
+  double tilt_floor_rad = 0.0012;
 
   void visit(ConfigVisitor& v);
 };
