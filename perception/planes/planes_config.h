@@ -42,10 +42,10 @@ struct PlaneSegmentConfig {
 struct PlaneNoiseConfig {
   double range_sigma_m = 0.015;
   double voxel_sigma_m = 0.005;
-  double scale = 3.0;
+  double scale = 2.5;
   double offset_floor_m = 0.0015;
-  double height_floor_m = 0.005;
-  double tilt_floor_rad = 0.0012;
+  double height_floor_m = 0.006;
+  double tilt_floor_rad = 0.0014;
 
   void visit(ConfigVisitor& v);
 };
