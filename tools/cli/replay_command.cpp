@@ -47,9 +47,17 @@ void report(const RunRecord& record, const std::string& out_dir) {
   std::printf("graph_digest %s\n", record.graph_digest.c_str());
 }
 
+// What takes part for the layers asked for; empty leaves it to SESSION.
+std::vector<std::string> stagesOf(const Arguments& arguments, bool layers_given) {
+  if (!layers_given) return {};
+  if (arguments.layers == "keyframes") return {"odometry", "backend"};
+  return {"odometry", "planes", "backend"};
+}
+
 void run(const Arguments& arguments, bool layers_given) {
   if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
-  ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry, progressLine()};
+  ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry,
+                        stagesOf(arguments, layers_given), progressLine()};
   if (layers_given && arguments.layers != "keyframes")
     std::fprintf(stderr, "sgraphs: warning: --layers %s: this version fills the keyframe layer only\n",
                  arguments.layers.c_str());

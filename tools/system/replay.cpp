@@ -12,6 +12,7 @@ namespace sgraphs {
 Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
   if (!options_.odometry.empty()) parseOdometryMode(options_.odometry);
   odometry_.emplace(bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
+  planes_.emplace(bus_, makePlanesStep(options_.config));
   backend_.emplace(bus_, makeBackendCore(options_.config));
   inspect();
 }
@@ -32,7 +33,7 @@ void Replay::inspect() {
       schema = session.schema;
       writer = session.writer;
       has_session = fromMessage(session).has_value();
-      if (has_session) feed(*event);
+      if (has_session) feedSession(session);
     }
   }
   if (schema >= 0 && schema != kMessageSchema)
@@ -49,6 +50,16 @@ void Replay::inspect() {
 
 void Replay::feed(const LogEvent& event) {
   bus_.publish(event.channel, event.bytes);
+  bus_.dispatch(0);
+}
+
+// Every node sees the same SESSION, with the stages that this replay was asked for.
+void Replay::feedSession(session_t session) {
+  if (!options_.stages.empty()) {
+    session.stages = options_.stages;
+    session.num_stages = static_cast<int32_t>(session.stages.size());
+  }
+  publish(bus_, channels::kSession, session);
   bus_.dispatch(0);
 }
 
@@ -110,7 +121,9 @@ RunRecord Replay::record() const {
   record.realtime_factor = wall_s_ > 0 ? record.duration_s / wall_s_ : 0;
   record.stages["decode"] = timingOf(odometry_->decodeLatency());
   record.stages["odometry"] = timingOf(odometry_->stepLatency());
+  if (planes_->stepLatency().count() > 0) record.stages["planes"] = timingOf(planes_->stepLatency());
   addGaps(record, odometry_->gate());
+  addGaps(record, planes_->gate());
   if (counts_->lost_packets > 0) record.gaps["lidar_packets"] = counts_->lost_packets;
   return record;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "backend/output/run_outputs.h"
 #include "common/bus/log_file.h"
@@ -22,7 +23,8 @@ struct ReplayProgress {
 struct ReplayOptions {
   std::string log;
   SystemConfig config;
-  std::string odometry;  // "lidar", "encoder", "fused"; empty: as SESSION says
+  std::string odometry;                  // "lidar", "encoder", "fused"; empty: as SESSION says
+  std::vector<std::string> stages = {};  // that take part, in place of SESSION's; empty: as SESSION says
   std::function<void(const ReplayProgress&)> on_progress;  // after each event; may be empty
 };
 
@@ -44,6 +46,7 @@ class Replay {
  private:
   void inspect();
   void feed(const LogEvent& event);
+  void feedSession(session_t session);
   void endWithoutStreamEnd();
   void requireScans() const;
 
@@ -51,6 +54,7 @@ class Replay {
   std::shared_ptr<Vlp16Counts> counts_ = std::make_shared<Vlp16Counts>();
   MemoryBus bus_;
   std::optional<OdometryNode> odometry_;
+  std::optional<PlanesNode> planes_;
   std::optional<BackendNode> backend_;
   std::vector<std::string> warnings_;
   std::string input_digest_;

@@ -4,6 +4,7 @@
 
 #include "backend/backend.h"
 #include "perception/odometry/odometry.h"
+#include "perception/planes/plane_segmentation.h"
 
 namespace sgraphs {
 
@@ -24,6 +25,12 @@ OdometryParts makeOdometryParts(const SystemConfig& config, std::shared_ptr<Vlp1
     };
   };
   return parts;
+}
+
+PlanesNode::Step makePlanesStep(const SystemConfig& config) {
+  return [segmentation = PlaneSegmentation(config.planes)](const Keyframe& keyframe) {
+    return segmentation.step(keyframe);
+  };
 }
 
 BackendCore makeBackendCore(const SystemConfig& config) {

@@ -6,12 +6,14 @@
 #include "backend/backend_node.h"
 #include "drivers/velodyne/vlp16_decoder.h"
 #include "perception/odometry/odometry_node.h"
+#include "perception/planes/planes_node.h"
 #include "tools/system/system_config.h"
 
 namespace sgraphs {
 
 // The real cores for the nodes. `counts` (optional) receives what the VLP-16 decoder counted.
 OdometryParts makeOdometryParts(const SystemConfig& config, std::shared_ptr<Vlp16Counts> counts = nullptr);
+PlanesNode::Step makePlanesStep(const SystemConfig& config);
 BackendCore makeBackendCore(const SystemConfig& config);
 
 // "3 packets: wrong block flag; …"; empty if none was refused.

@@ -3,16 +3,19 @@
 #include "backend/backend_config.h"
 #include "common/config/config_io.h"
 #include "perception/odometry/odometry_config.h"
+#include "perception/planes/planes_config.h"
 
 namespace sgraphs {
 
 // Configuration of the whole system: config/sgraphs.yaml holds every key with its default.
 struct SystemConfig {
   OdometryConfig odometry;
+  PlanesConfig planes;
   BackendConfig backend;
 
   void visit(ConfigVisitor& v) {
     v.section("odometry", odometry, "Scans to poses and keyframes");
+    v.section("planes", planes, "Keyframe clouds to planes");
     v.section("backend", backend, "Observations to one optimised graph");
   }
 };

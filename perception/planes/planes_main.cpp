@@ -1,0 +1,33 @@
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "common/base/error.h"
+#include "common/bus/lcm_bus.h"
+#include "tools/system/process.h"
+#include "tools/system/stages.h"
+
+// Keyframe clouds become planes on the LCM bus.
+int main(int argc, char** argv) {
+  using namespace sgraphs;
+  const ProcessText text{"sgraphs-planes", "Keyframe clouds become planes",
+                         "sgraphs-planes --lcm-url 'udpm://239.255.76.67:7667?ttl=0'", false};
+  return runProcess(text, argc, argv, [&text](const ProcessSetup& setup) {
+    LcmBus bus(setup.lcm_url);
+    PlanesNode node(bus, makePlanesStep(setup.config));
+    LoopHooks hooks;
+    hooks.done = [&node] { return node.done(); };
+    hooks.publish_status = [&node] { node.publishStatus(); };
+    hooks.finish = [&node](const std::string& why) { node.finish(why); };
+    hooks.overdue = [&node] { return node.streamEnded() && !node.done(); };
+    runLoop(bus, setup, hooks);
+    // A datagram may be lost, and the backend waits for this one.
+    for (int i = 0; i < 3; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      node.repeatEnd();
+    }
+    if (node.whyNot().empty()) return kExitDone;
+    std::fprintf(stderr, "%s: not reproducible: %s\n", text.name.c_str(), node.whyNot().c_str());
+    return kExitNotReproducible;
+  });
+}
