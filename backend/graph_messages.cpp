@@ -1,14 +1,12 @@
 #include "backend/graph_messages.h"
 
-#include <algorithm>
-#include <utility>
+#include <set>
+#include <stdexcept>
 
 #include "lcmtypes/convert/convert.h"
 
 namespace sgraphs {
 namespace {
-
-constexpr size_t kNodesPerChunk = 500;  // of 84 bytes
 
 graph_node_t toMessage(const KeyframeNode& node) {
   graph_node_t m{};
@@ -30,20 +28,82 @@ graph_node_t toMessage(const FloorNode& node) {
   return m;
 }
 
-std::vector<graph_update_t> chunked(std::vector<graph_node_t> nodes, graph_update_t head) {
-  head.num_chunks =
-      static_cast<int32_t>(std::max<size_t>(1, (nodes.size() + kNodesPerChunk - 1) / kNodesPerChunk));
-  std::vector<graph_update_t> chunks;
-  for (head.chunk = 0; head.chunk < head.num_chunks; ++head.chunk) {
-    const size_t begin = kNodesPerChunk * static_cast<size_t>(head.chunk);
-    const size_t end = std::min(nodes.size(), begin + kNodesPerChunk);
-    graph_update_t& m = chunks.emplace_back(head);
-    m.nodes.assign(nodes.begin() + static_cast<std::ptrdiff_t>(begin),
-                   nodes.begin() + static_cast<std::ptrdiff_t>(end));
-    m.num_nodes = static_cast<int32_t>(m.nodes.size());
-  }
-  return chunks;
+MapPlane mapPlane(const PlaneNode& node) {
+  MapPlane plane;
+  plane.id = node.id;
+  plane.floor = node.floor;
+  plane.label = node.label;
+  plane.normal_map = node.normal_map;
+  plane.d = node.d();
+  plane.centroid_map = node.centroid_map;
+  plane.covariance = node.covariance;
+  for (const Eigen::Vector3d& corner : node.polygon_map) plane.polygon_map.push_back(corner.cast<float>());
+  return plane;
 }
+
+// Merges follow one another: the plane that stands at their end.
+PlaneId livesOnIn(const SituationalGraph& graph, PlaneId id) {
+  size_t steps = 0;
+  for (auto it = graph.merged_planes.find(id); it != graph.merged_planes.end();
+       it = graph.merged_planes.find(id)) {
+    id = it->second;
+    if (++steps > graph.merged_planes.size())
+      throw std::logic_error("graph messages: planes merged in a circle");
+  }
+  return id;
+}
+
+graph_plane_t planeMessage(const SituationalGraph& graph, PlaneId id) {
+  if (const auto node = graph.planes.find(id); node != graph.planes.end())
+    return toMessage(mapPlane(node->second));
+  if (!graph.merged_planes.contains(id))
+    throw std::logic_error("graph messages: plane " + id.str() + " changed, but is neither there nor merged");
+  MapPlane merged;
+  merged.id = id;
+  merged.merged_into = livesOnIn(graph, id);
+  return toMessage(merged);
+}
+
+// Fills message after message up to the bytes of a datagram.
+class Chunks {
+ public:
+  explicit Chunks(const graph_update_t& head) : head_(head) { begin(); }
+
+  void add(const graph_node_t& node) {
+    makeRoom(node.getEncodedSize());
+    chunks_.back().nodes.push_back(node);
+  }
+  void add(const graph_plane_t& plane) {
+    makeRoom(plane.getEncodedSize());
+    chunks_.back().planes.push_back(plane);
+  }
+
+  std::vector<graph_update_t> finish() {
+    for (size_t i = 0; i < chunks_.size(); ++i) {
+      graph_update_t& m = chunks_[i];
+      m.chunk = static_cast<int32_t>(i);
+      m.num_chunks = static_cast<int32_t>(chunks_.size());
+      m.num_nodes = static_cast<int32_t>(m.nodes.size());
+      m.num_planes = static_cast<int32_t>(m.planes.size());
+    }
+    return std::move(chunks_);
+  }
+
+ private:
+  void begin() {
+    chunks_.push_back(head_);
+    bytes_ = head_.getEncodedSize();
+  }
+  // A member's encoded size counts its fingerprint, which is not sent inside a message: the sum errs upwards.
+  void makeRoom(int bytes) {
+    if (bytes_ + bytes > kMaxGraphMessageBytes) begin();
+    bytes_ += bytes;
+  }
+
+  graph_update_t head_;
+  std::vector<graph_update_t> chunks_;
+  int bytes_ = 0;
+};
 
 graph_update_t headOf(const SituationalGraph& graph, const RoundOutput& output, int64_t round, Time time) {
   graph_update_t m{};
@@ -60,19 +120,30 @@ graph_update_t headOf(const SituationalGraph& graph, const RoundOutput& output, 
 
 std::vector<graph_update_t> updateMessages(const SituationalGraph& graph, const RoundOutput& output,
                                            int64_t round, Time time) {
-  std::vector<graph_node_t> nodes;
-  for (const KeyframeId id : output.changed) nodes.push_back(toMessage(graph.keyframes.at(id)));
-  return chunked(std::move(nodes), headOf(graph, output, round, time));
+  Chunks chunks(headOf(graph, output, round, time));
+  for (const KeyframeId id : output.changed) {
+    const auto node = graph.keyframes.find(id);
+    if (node == graph.keyframes.end())
+      throw std::logic_error("graph messages: keyframe " + id.str() + " changed, but is not there");
+    chunks.add(toMessage(node->second));
+  }
+  const std::set<PlaneId> changed(output.changed_planes.begin(), output.changed_planes.end());
+  for (const PlaneId id : changed) chunks.add(planeMessage(graph, id));
+  return chunks.finish();
 }
 
 std::vector<graph_update_t> snapshotMessages(const SituationalGraph& graph, const RoundOutput& newest,
                                              int64_t round, Time time) {
-  std::vector<graph_node_t> nodes;
-  for (const auto& [id, node] : graph.keyframes) nodes.push_back(toMessage(node));
-  for (const auto& [id, node] : graph.floors) nodes.push_back(toMessage(node));
   graph_update_t head = headOf(graph, newest, round, time);
   head.complete = 1;
-  return chunked(std::move(nodes), head);
+  Chunks chunks(head);
+  for (const auto& [id, node] : graph.keyframes) chunks.add(toMessage(node));
+  for (const auto& [id, node] : graph.floors) chunks.add(toMessage(node));
+  std::set<PlaneId> planes;
+  for (const auto& [id, node] : graph.planes) planes.insert(id);
+  for (const auto& [id, into] : graph.merged_planes) planes.insert(id);
+  for (const PlaneId id : planes) chunks.add(planeMessage(graph, id));
+  return chunks.finish();
 }
 
 }  // namespace sgraphs

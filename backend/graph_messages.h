@@ -9,11 +9,16 @@
 
 namespace sgraphs {
 
-// GRAPH_UPDATE of a round: the keyframes that it changed, in chunks that fit one datagram.
+// Most bytes of a message, so that it stays one datagram.
+inline constexpr int kMaxGraphMessageBytes = 60000;
+
+// GRAPH_UPDATE of a round: the keyframes and planes that it changed, in chunks that fit one datagram. A plane
+// that was merged away says which living plane it is now. Throws std::logic_error for a changed node that the
+// graph does not know.
 std::vector<graph_update_t> updateMessages(const SituationalGraph& graph, const RoundOutput& output,
                                            int64_t round, Time time);
 
-// GRAPH_SNAPSHOT: every node.
+// GRAPH_SNAPSHOT: every node, and where each merged plane lives on.
 std::vector<graph_update_t> snapshotMessages(const SituationalGraph& graph, const RoundOutput& newest,
                                              int64_t round, Time time);
 

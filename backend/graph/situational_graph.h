@@ -23,7 +23,6 @@ struct KeyframeNode {
   std::shared_ptr<const Keyframe> keyframe;  // cloud, viewpoints and measurements as they arrived
 };
 
-enum class PlaneLabel : int8_t { kX = 1, kY = 2, kHorizontal = 3 };
 const char* toString(PlaneLabel label);  // "x", "y", "horizontal", as graph.json has it
 
 // A wall face, a floor or a ceiling. The axes of its tangents are u, v = tangentBasis(normal_map).

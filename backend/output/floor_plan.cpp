@@ -10,9 +10,6 @@ namespace sgraphs {
 namespace {
 
 constexpr double kCell_m = 0.05;
-// The slice shows walls and furniture, not floor and ceiling.
-constexpr double kSliceLow_m = 0.25;
-constexpr double kSliceHigh_m = 2.0;
 constexpr int kGreys = 8;
 constexpr double kFullInk = 12;          // occupied voxels of the slice's column that print darkest
 constexpr double kOutlierShare = 0.002;  // of the slice's points may lie outside the picture, on each side
@@ -26,7 +23,7 @@ std::vector<Eigen::Vector2d> slicePoints(std::span<const MapPoint> map, FloorId 
     if (point.floor != floor) continue;
     const Eigen::Vector3d p = point.position_map.cast<double>();
     const double h = height.above(p);
-    if (h >= kSliceLow_m && h <= kSliceHigh_m) slice.emplace_back(p.head<2>());
+    if (h >= kPlanSliceLow_m && h <= kPlanSliceHigh_m) slice.emplace_back(p.head<2>());
   }
   return slice;
 }
@@ -104,6 +101,7 @@ FloorPlan makeFloorPlan(const SituationalGraph& graph, const FloorNode& floor, s
                         std::span<const OdometryEstimate> scans) {
   FloorPlan plan;
   plan.floor = floor.id;
+  plan.walls = wallLines(graph, floor);
   plan.path = pathOn(graph, floor.id, scans);
   if (!scans.empty()) plan.duration_s = (scans.back().time - scans.front().time).seconds();
   const auto slice = slicePoints(map, floor.id, StoreyHeight(graph, floor));

@@ -10,6 +10,10 @@
 
 namespace sgraphs {
 
+// Heights over the walking surface that a plan shows: walls and furniture, not floor and ceiling.
+inline constexpr double kPlanSliceLow_m = 0.25;
+inline constexpr double kPlanSliceHigh_m = 2.0;
+
 // What one storey's plan shows, in map, metres: how much stands above each cell of ground, and the path.
 struct FloorPlan {
   FloorId floor;
@@ -20,12 +24,22 @@ struct FloorPlan {
     bool joined = true;  // with the point before; false where the robot was on another storey in between
   };
   std::vector<PathPoint> path;
+  // A stretch of a wall's face, seen from above; the face looks to the left of a -> b.
+  struct WallLine {
+    PlaneId wall;
+    Eigen::Vector2d a = Eigen::Vector2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  };
+  std::vector<WallLine> walls;
   double duration_s = 0;  // of the whole run: the colour scale's end
   Paper extent;           // of ink and path
 };
 
 FloorPlan makeFloorPlan(const SituationalGraph& graph, const FloorNode& floor, std::span<const MapPoint> map,
                         std::span<const OdometryEstimate> scans);
+
+// Faces of the storey's walls where their extent reaches into the slice, by id; a doorway leaves a gap.
+std::vector<FloorPlan::WallLine> wallLines(const SituationalGraph& graph, const FloorNode& floor);
 
 std::string floorPlanPng(const FloorPlan& plan);
 std::string floorPlanSvg(const FloorPlan& plan);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "backend/output/floor_plan.h"
 
@@ -13,6 +14,10 @@ constexpr Color kFine{222, 226, 231};
 constexpr Color kStart{22, 150, 75};
 constexpr Color kEnd{208, 38, 48};
 constexpr Color kWhite{255, 255, 255};
+constexpr Color kWall{24, 28, 34};
+// Thin enough that the two faces of a 10 cm wall, or a wall mapped twice, are two lines.
+constexpr double kWallPen_m = 0.045;
+constexpr double kWallTick_m = 0.07;
 constexpr int kColorSteps = 100;
 constexpr int kMaxPixels = 2400;
 constexpr double kMaxPixelsPerMetre = 100;
@@ -48,6 +53,7 @@ class Drawing {
     drawGrid(canvas);
     if (!plan_.ink.indices.empty()) canvas.raster(plan_.ink);
     drawPath(canvas);
+    drawWalls(canvas);
     drawTitle(canvas);
     drawScaleBar(canvas);
     drawLegend(canvas);
@@ -87,7 +93,7 @@ class Drawing {
 
   // A white rim keeps the path apart from what it crosses.
   void drawPath(Canvas& canvas) const {
-    const double pen = letter_ * 0.32;
+    const double pen = letter_ * (plan_.walls.empty() ? 0.32 : 0.2);
     for (const bool rim : {true, false}) {
       std::vector<Eigen::Vector2d> run;
       const auto flush = [&](double time_s) {
@@ -113,6 +119,16 @@ class Drawing {
     drawMark(canvas, plan_.path.front().position_map, kStart);
   }
 
+  // Each face ends in ticks towards the side it was seen from, so pieces in one line stay apart.
+  void drawWalls(Canvas& canvas) const {
+    for (const FloorPlan::WallLine& wall : plan_.walls) {
+      const Eigen::Vector2d along = (wall.b - wall.a).normalized();
+      const Eigen::Vector2d tick = kWallTick_m * Eigen::Vector2d(-along.y(), along.x());
+      const Eigen::Vector2d outline[] = {wall.a + tick, wall.a, wall.b, wall.b + tick};
+      canvas.polyline(outline, kWall, kWallPen_m);
+    }
+  }
+
   void drawMark(Canvas& canvas, const Eigen::Vector2d& at, Color color) const {
     canvas.disc(at, 0.85 * letter_, kWhite);
     canvas.disc(at, 0.6 * letter_, color);
@@ -126,12 +142,19 @@ class Drawing {
     return length;
   }
 
+  double countWalls() const {
+    std::set<PlaneId> walls;
+    for (const FloorPlan::WallLine& wall : plan_.walls) walls.insert(wall.wall);
+    return static_cast<double>(walls.size());
+  }
+
   void drawTitle(Canvas& canvas) const {
     canvas.text({extent_.min.x(), extent_.max.y() + 1.4 * letter_}, "Floor " + plan_.floor.str(),
                 1.5 * letter_, kText, TextAnchor::kLeft);
     canvas.text({extent_.max.x(), extent_.max.y() + 1.4 * letter_},
-                format("path %.1f m", pathLength()) + format(",  %.0f s", plan_.duration_s), letter_, kText,
-                TextAnchor::kRight);
+                (plan_.walls.empty() ? std::string() : format("%.0f wall faces,  ", countWalls())) +
+                    format("path %.1f m", pathLength()) + format(",  %.0f s", plan_.duration_s),
+                letter_, kText, TextAnchor::kRight);
   }
 
   void drawScaleBar(Canvas& canvas) const {

@@ -56,7 +56,7 @@ void writeOutputs(const RunRecord& record, const std::string& out_dir) {
   const std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
   const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);
   writeMap(map, out_dir + "/map.ply");
-  writeFile(out_dir + "/graph.json", graphJson(graph, floors));
+  writeFile(out_dir + "/graph.json", graphJson(graph, floors, record.keyframe_covariances));
   writeFile(out_dir + "/graph.g2o", graphG2o(graph));
   if (!graph.keyframes.empty())
     for (const auto& [id, floor] : floors) writeStorey(record, floor, map, out_dir);

@@ -33,4 +33,21 @@ struct KeyframePlanes {
   std::vector<PlaneObservation> planes;
 };
 
+// The map axis a mapped plane's normal is nearest to, relative to the building's own axes.
+enum class PlaneLabel : int8_t { kX = 1, kY = 2, kHorizontal = 3 };
+
+// A plane of the map as GRAPH_UPDATE tells it to the other stages. Its axes are u, v =
+// tangentBasis(normal_map).
+struct MapPlane {
+  PlaneId id;
+  PlaneId merged_into;  // valid: this plane lives on in that one, and nothing below means anything
+  FloorId floor;
+  PlaneLabel label = PlaneLabel::kHorizontal;
+  Eigen::Vector3d normal_map = Eigen::Vector3d::UnitZ();     // unit, towards the side it was seen from
+  double d = 0;                                              // n.p + d = 0 [m]
+  Eigen::Vector3d centroid_map = Eigen::Vector3d::Zero();    // centre of the extent, on the plane [m]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of (tilt_u [rad], tilt_v [rad], offset [m])
+  std::vector<Eigen::Vector3f> polygon_map;  // extent, counter-clockwise seen from the observer [m]
+};
+
 }  // namespace sgraphs

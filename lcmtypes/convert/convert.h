@@ -9,6 +9,7 @@
 #include "common/types/lidar_scan.h"
 #include "common/types/plane.h"
 #include "common/types/session.h"
+#include "sgraphs/graph_plane_t.hpp"
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
@@ -71,5 +72,11 @@ inline constexpr int kMaxBoundaryCorners = 48;
 // Throws std::logic_error for more planes or corners than that.
 keyframe_planes_t toMessage(const KeyframePlanes& planes);
 std::optional<KeyframePlanes> fromMessage(const keyframe_planes_t& message);
+
+// Most corners of a mapped plane's extent. A merged plane's message carries its two ids and zeros.
+inline constexpr int kMaxExtentCorners = 1024;
+// Throws std::logic_error for more corners than that.
+graph_plane_t toMessage(const MapPlane& plane);
+std::optional<MapPlane> fromMessage(const graph_plane_t& message);
 
 }  // namespace sgraphs
