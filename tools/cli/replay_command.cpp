@@ -47,9 +47,8 @@ void report(const RunRecord& record, const std::string& out_dir) {
   std::printf("graph_digest %s\n", record.graph_digest.c_str());
 }
 
-// What takes part for the layers asked for; empty leaves it to SESSION.
-std::vector<std::string> stagesOf(const Arguments& arguments, bool layers_given) {
-  if (!layers_given) return {};
+// What takes part for the layers asked for. Not left to SESSION: old logs know fewer stages than there are now.
+std::vector<std::string> stagesOf(const Arguments& arguments) {
   if (arguments.layers == "keyframes") return {"odometry", "backend"};
   return {"odometry", "planes", "backend"};
 }
@@ -57,9 +56,9 @@ std::vector<std::string> stagesOf(const Arguments& arguments, bool layers_given)
 void run(const Arguments& arguments, bool layers_given) {
   if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
   ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry,
-                        stagesOf(arguments, layers_given), progressLine()};
-  if (layers_given && arguments.layers != "keyframes")
-    std::fprintf(stderr, "sgraphs: warning: --layers %s: this version fills the keyframe layer only\n",
+                        stagesOf(arguments), progressLine()};
+  if (layers_given && (arguments.layers == "rooms" || arguments.layers == "floors"))
+    std::fprintf(stderr, "sgraphs: warning: --layers %s: this version fills the layers keyframes and walls only\n",
                  arguments.layers.c_str());
   Replay replay(std::move(options));
   replay.run();
