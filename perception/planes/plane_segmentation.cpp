@@ -49,12 +49,16 @@ class Run {
 
   std::vector<PlaneObservation> planes() {
     std::vector<PlaneObservation> found;
-    while (const std::optional<Hypothesis> plane = search_.next())
-      for (const Segment& segment : segmentsOf(*plane))
+    while (const std::optional<Hypothesis> plane = search_.next()) {
+      for (const Segment& segment : segmentsOf(*plane)) {
         if (std::optional<PlaneObservation> observation = observe(segment, *plane)) {
           take(segment);
           found.push_back(std::move(*observation));
+        } else {
+          for (const int32_t i : segment.core) search_.passOver(point(i).facet);
         }
+      }
+    }
     std::stable_sort(found.begin(), found.end(), [](const PlaneObservation& a, const PlaneObservation& b) {
       return a.area_m2 > b.area_m2;
     });
