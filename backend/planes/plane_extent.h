@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backend/graph/situational_graph.h"
-#include "backend/planes/convex_polygon.h"
+#include "common/geometry/convex_polygon.h"
 
 namespace sgraphs {
 

@@ -12,6 +12,9 @@ namespace sgraphs {
 namespace {
 
 constexpr int kLevels = 4;  // of cell sizes
+// Largest ratio of the variances across and along a surface. Where two walls meet in the middle of a
+// neighbourhood it is 1/4; for a wall of 5 cm seen from both sides, 1/9.
+constexpr double kMaxThinness = 0.15;
 // Returns nearer than this to their viewpoint have no direction of view; farther ones are none of a LiDAR.
 constexpr double kMinRange_m = 1e-3;
 constexpr double kMaxRange_m = 300;
@@ -108,7 +111,8 @@ std::optional<Eigen::Vector3d> normalOf(const PlaneMoments& moments, const Facet
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
   eigen.computeDirect(moments.covariance());
   const double thin = std::max(eigen.eigenvalues()(0), 0.0), wide = eigen.eigenvalues()(1);
-  if (thin > config.max_thickness_m * config.max_thickness_m || thin >= 0.5 * wide) return std::nullopt;
+  if (thin > config.max_thickness_m * config.max_thickness_m || thin > kMaxThinness * wide)
+    return std::nullopt;
   // Variance of an eigenvector (Anderson, "Asymptotic theory for principal component analysis", 1963).
   const double variance = thin * wide / (moments.weight * (wide - thin) * (wide - thin));
   if (variance > config.max_normal_sigma_rad * config.max_normal_sigma_rad) return std::nullopt;

@@ -24,7 +24,7 @@ PlaneGrid::PlaneGrid(const std::vector<Eigen::Vector2d>& points, double cell_m, 
   Eigen::Vector2i size;
   for (int a = 0; a < 2; ++a) {
     const double extent = std::max(high[a] - low[a], 1e-3);
-    const double n = std::clamp(std::ceil(extent / cell_m), 1.0, kMaxCellsPerSide);
+    const double n = std::clamp(std::ceil(extent / cell_m - 1e-6), 1.0, kMaxCellsPerSide);
     size[a] = static_cast<int>(n);
     cell_[a] = extent / n;
   }

@@ -113,12 +113,6 @@ Polygon withAtMost(const Polygon& polygon, size_t max_corners, double tolerance_
 
 }  // namespace
 
-double areaOf(const Polygon& polygon) {
-  double twice = 0;
-  for (size_t i = 0; i < polygon.size(); ++i) twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
-  return 0.5 * twice;
-}
-
 bool isSimple(const Polygon& polygon) {
   const size_t n = polygon.size();
   if (n < 3) return false;
@@ -128,25 +122,6 @@ bool isSimple(const Polygon& polygon) {
       if (segmentsTouch(polygon[i], polygon[i + 1], polygon[j], polygon[(j + 1) % n])) return false;
     }
   return true;
-}
-
-// Andrew's monotone chain.
-Polygon convexHull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return {};
-  Polygon hull;
-  const auto extend = [&hull](const Eigen::Vector2d& p, size_t keep) {
-    while (hull.size() >= keep + 2 && side(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
-    hull.push_back(p);
-  };
-  for (const Eigen::Vector2d& p : points) extend(p, 0);
-  const size_t lower = hull.size() - 1;
-  for (size_t i = points.size() - 1; i-- > 0;) extend(points[i], lower);
-  hull.pop_back();
-  return hull.size() < 3 ? Polygon{} : hull;
 }
 
 Outline outlineOf(const std::vector<Eigen::Vector2d>& points, double cell_m, double link_m, int max_corners) {
@@ -163,7 +138,7 @@ Outline outlineOf(const std::vector<Eigen::Vector2d>& points, double cell_m, dou
   const auto limit = static_cast<size_t>(max_corners);
   if (num_regions == 1) {
     outline.polygon = withAtMost(borderOf(grid), limit, 0.75 * cell_m);
-    if (isSimple(outline.polygon) && areaOf(outline.polygon) > 0) return outline;
+    if (isSimple(outline.polygon) && polygonArea(outline.polygon) > 0) return outline;
   }
   outline.polygon = withAtMost(convexHull(points), limit, 1e-3);
   return outline;

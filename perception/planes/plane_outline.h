@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "common/geometry/convex_polygon.h"
+
 namespace sgraphs {
 
-using Polygon = std::vector<Eigen::Vector2d>;
+using Polygon = Polygon2d;
 
-double areaOf(const Polygon& polygon);  // positive if counter-clockwise
 bool isSimple(const Polygon& polygon);
-Polygon convexHull(std::vector<Eigen::Vector2d> points);
 
 struct Outline {
   Polygon polygon;    // simple, counter-clockwise, not closed; empty for points on a line

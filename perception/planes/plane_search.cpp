@@ -41,6 +41,11 @@ void PlaneSearch::take(int32_t facet) {
   state_[static_cast<size_t>(facet)] = State::kTaken;
 }
 
+void PlaneSearch::passOver(int32_t facet) {
+  State& state = state_[static_cast<size_t>(facet)];
+  if (state == State::kFree) state = State::kNoSeed;
+}
+
 bool PlaneSearch::agrees(const Facet& facet, const Eigen::Vector3d& normal) const {
   return facet.normal.dot(normal) >= min_cos_;
 }

@@ -32,7 +32,8 @@ class PlaneSearch {
 
   // The facet belongs to a plane: it is out of the search.
   void take(int32_t facet);
-  bool taken(int32_t facet) const { return state_[static_cast<size_t>(facet)] == State::kTaken; }
+  // The facet was in a segment that is no plane: no plane grows from it any more, but it may join one.
+  void passOver(int32_t facet);
 
  private:
   enum class State : uint8_t { kFree, kNoSeed, kTaken };

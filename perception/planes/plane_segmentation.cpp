@@ -49,12 +49,16 @@ class Run {
 
   std::vector<PlaneObservation> planes() {
     std::vector<PlaneObservation> found;
-    while (const std::optional<Hypothesis> plane = search_.next())
-      for (const Segment& segment : segmentsOf(*plane))
+    while (const std::optional<Hypothesis> plane = search_.next()) {
+      for (const Segment& segment : segmentsOf(*plane)) {
         if (std::optional<PlaneObservation> observation = observe(segment, *plane)) {
           take(segment);
           found.push_back(std::move(*observation));
+        } else {
+          for (const int32_t i : segment.core) search_.passOver(point(i).facet);
         }
+      }
+    }
     std::stable_sort(found.begin(), found.end(), [](const PlaneObservation& a, const PlaneObservation& b) {
       return a.area_m2 > b.area_m2;
     });
@@ -127,7 +131,7 @@ class Run {
     const TangentBasis axes = gridAxes(fit.plane.normal);
     const Outline outline = outlineOf(project(all, axes), config.grid_m, config.link_m, kMaxCorners);
     PlaneObservation plane;
-    plane.area_m2 = areaOf(outline.polygon);
+    plane.area_m2 = polygonArea(outline.polygon);
     if (plane.area_m2 < config.min_area_m2 || outline.filled < config.min_filled) return std::nullopt;
     plane.normal_body = fit.plane.normal;
     plane.centroid_body = fit.centroid;

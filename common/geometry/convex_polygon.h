@@ -8,7 +8,7 @@ namespace sgraphs {
 // Corners counter-clockwise, not closed.
 using Polygon2d = std::vector<Eigen::Vector2d>;
 
-// Convex hull; fewer than three corners if the points lie on a line.
+// Convex hull; empty if the points lie on a line.
 Polygon2d convexHull(Polygon2d points);
 
 // Signed: positive for counter-clockwise.

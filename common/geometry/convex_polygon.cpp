@@ -1,4 +1,4 @@
-#include "backend/planes/convex_polygon.h"
+#include "common/geometry/convex_polygon.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ Polygon2d convexHull(Polygon2d points) {
   };
   std::sort(points.begin(), points.end(), before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
+  if (points.size() < 3) return {};
   Polygon2d hull;
   const auto add = [&hull](const Eigen::Vector2d& p, size_t base) {
     while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
@@ -52,7 +52,7 @@ Polygon2d convexHull(Polygon2d points) {
   const size_t lower = hull.size() - 1;
   for (size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
   hull.pop_back();
-  return hull;
+  return hull.size() < 3 ? Polygon2d{} : hull;
 }
 
 double polygonArea(const Polygon2d& polygon) {

@@ -1,4 +1,4 @@
-#include "backend/planes/convex_polygon.h"
+#include "common/geometry/convex_polygon.h"
 
 #include <gtest/gtest.h>
 
