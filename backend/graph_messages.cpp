@@ -35,7 +35,7 @@ MapPlane mapPlane(const PlaneNode& node) {
   plane.label = node.label;
   plane.normal_map = node.normal_map;
   plane.d = node.d();
-  plane.centroid_map = node.centroid_map;
+  plane.centroid_map = node.centroid_map - node.distance(node.centroid_map) * node.normal_map;
   plane.covariance = node.covariance;
   for (const Eigen::Vector3d& corner : node.polygon_map) plane.polygon_map.push_back(corner.cast<float>());
   return plane;

@@ -11,8 +11,11 @@ namespace {
 
 constexpr double kCell_m = 0.05;
 constexpr int kGreys = 8;
-constexpr double kFullInk = 12;          // occupied voxels of the slice's column that print darkest
-constexpr double kOutlierShare = 0.002;  // of the slice's points may lie outside the picture, on each side
+constexpr int kLightestGrey = 225;
+constexpr uint8_t kDarkestGrey = 35;
+constexpr uint8_t kGreyBehindWalls = 165;  // points step back where walls are drawn
+constexpr double kFullInk = 12;            // occupied voxels of the slice's column that print darkest
+constexpr double kOutlierShare = 0.002;    // of the slice's points may lie outside the picture, on each side
 constexpr double kPathStep_m = 0.05;
 constexpr int kMaxCells = 100'000'000;
 
@@ -49,7 +52,7 @@ Paper robustExtent(const std::vector<Eigen::Vector2d>& points,
   return extent;
 }
 
-Raster makeInk(const std::vector<Eigen::Vector2d>& points, const Paper& extent) {
+Raster makeInk(const std::vector<Eigen::Vector2d>& points, const Paper& extent, uint8_t darkest) {
   Raster ink;
   ink.cell = kCell_m;
   ink.origin = (extent.min / kCell_m).array().floor() * kCell_m;
@@ -64,7 +67,8 @@ Raster makeInk(const std::vector<Eigen::Vector2d>& points, const Paper& extent) 
     ++counts[static_cast<size_t>(cell.y()) * ink.width + static_cast<size_t>(cell.x())];
   }
   for (int level = 1; level <= kGreys; ++level) {
-    const auto grey = static_cast<uint8_t>(225 - 190 * (level - 1) / (kGreys - 1));
+    const auto grey =
+        static_cast<uint8_t>(kLightestGrey - (kLightestGrey - darkest) * (level - 1) / (kGreys - 1));
     ink.palette.push_back({grey, grey, grey});
   }
   ink.indices.reserve(counts.size());
@@ -106,7 +110,7 @@ FloorPlan makeFloorPlan(const SituationalGraph& graph, const FloorNode& floor, s
   if (!scans.empty()) plan.duration_s = (scans.back().time - scans.front().time).seconds();
   const auto slice = slicePoints(map, floor.id, StoreyHeight(graph, floor));
   plan.extent = robustExtent(slice, plan.path);
-  plan.ink = makeInk(slice, plan.extent);
+  plan.ink = makeInk(slice, plan.extent, plan.walls.empty() ? kDarkestGrey : kGreyBehindWalls);
   return plan;
 }
 

@@ -15,8 +15,8 @@ constexpr Color kStart{22, 150, 75};
 constexpr Color kEnd{208, 38, 48};
 constexpr Color kWhite{255, 255, 255};
 constexpr Color kWall{24, 28, 34};
-// Thin enough that the two faces of a 10 cm wall, or a wall mapped twice, are two lines.
-constexpr double kWallPen_m = 0.045;
+// Thin enough that the two faces of a 5 cm wall, or a wall mapped twice, are two lines.
+constexpr double kWallPen_m = 0.035;
 constexpr double kWallTick_m = 0.07;
 constexpr int kColorSteps = 100;
 constexpr int kMaxPixels = 2400;

@@ -41,6 +41,7 @@ Json keyframeJson(const KeyframeNode& node, const std::map<KeyframeId, Matrix6d>
 // The tangent moves the normal along u and v. A turn about v moves it along u, one about -u along v.
 Json wallJson(const PlaneNode& plane) {
   const TangentBasis basis = tangentBasis(plane.normal_map);
+  const Eigen::Vector3d centroid = plane.centroid_map - plane.distance(plane.centroid_map) * plane.normal_map;
   Json polygon = Json::array();
   for (const Eigen::Vector3d& corner : plane.polygon_map) polygon.push_back(vectorJson(corner));
   return {{"id", plane.id.str()},
@@ -48,7 +49,7 @@ Json wallJson(const PlaneNode& plane) {
           {"label", toString(plane.label)},
           {"normal", vectorJson(plane.normal_map)},
           {"d", plane.d()},
-          {"centroid", vectorJson(plane.centroid_map)},
+          {"centroid", vectorJson(centroid)},
           {"axes", {{"u", vectorJson(basis.col(1))}, {"v", vectorJson(-basis.col(0))}}},
           {"covariance", upperTriangle(plane.covariance)},
           {"polygon", std::move(polygon)},

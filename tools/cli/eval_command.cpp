@@ -24,8 +24,10 @@ void run(const Options& options) {
   writeFile(options.out_dir + "/eval_error.png", errorPlot(evaluation, truth));
   const std::string map = mapPlot(evaluation, truth);
   if (!map.empty()) writeFile(options.out_dir + "/eval_map.png", map);
-  std::printf("wrote %s/eval.json, eval_trajectory.png, eval_error.png%s\n", options.out_dir.c_str(),
-              map.empty() ? "" : ", eval_map.png");
+  const std::string walls = wallPlot(evaluation, truth);
+  if (!walls.empty()) writeFile(options.out_dir + "/eval_walls.png", walls);
+  std::printf("wrote %s/eval.json, eval_trajectory.png, eval_error.png%s%s\n", options.out_dir.c_str(),
+              map.empty() ? "" : ", eval_map.png", walls.empty() ? "" : ", eval_walls.png");
 }
 
 }  // namespace
@@ -44,7 +46,11 @@ void addEval(CLI::App& app) {
       "ATE: translation after SE(3) alignment without scale, truth interpolated at the estimate's stamps;\n"
       "evo: the same with evo_ape's nearest stamps. The alignment of trajectory.tum moves the map.\n"
       "Completeness: mesh area within 10 m and line of sight of the path that has a map point within 5 cm.\n"
-      "NEES: 3 if the links' covariances are what they claim to be.");
+      "NEES: 3 if the links' covariances are what they claim to be; of optimised poses and planes, relative "
+      "to\nthe first keyframe: the number in brackets.\n"
+      "Walls: the two sides of each wall of plan.json; asked for are those that the sensor had in view for 5 "
+      "s\n"
+      "(docs/accuracy.md).");
   command->callback([options] { run(*options); });
 }
 

@@ -13,6 +13,9 @@ namespace sgraphs {
 std::string trajectoryPlot(const Evaluation& evaluation, const Truth& truth);  // over the walls at 1 m height
 std::string errorPlot(const Evaluation& evaluation, const Truth& truth);       // error over time
 std::string mapPlot(const Evaluation& evaluation, const Truth& truth);         // map coloured by its error
+// True walls grey; their faces as they were found, missed or doubled; estimated walls on top, false ones
+// marked.
+std::string wallPlot(const Evaluation& evaluation, const Truth& truth);
 
 // Where a mesh crosses a height, seen from above.
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sliceMesh(const TriangleMesh& mesh, double z_m);

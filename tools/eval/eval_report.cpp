@@ -56,6 +56,42 @@ std::string calibrationLines(const Evaluation& evaluation) {
   return lines;
 }
 
+std::string faceCounts(const WallResult::Counts& c) {
+  return format("%zu found, %zu missed, %zu doubled", c.found, c.missed, c.doubled);
+}
+
+std::string wallLines(const WallResult& walls) {
+  if (!walls.missing.empty()) return "walls     not judged: " + walls.missing + "\n";
+  const auto asked = walls.counts(true), others = walls.counts(false);
+  std::string lines =
+      format("walls     %zu faces seen for %.0f s or more: ", asked.faces, WallResult::kAskedAfter_s) +
+      faceCounts(asked) + format("; %zu others: ", others.faces) + faceCounts(others) + "\n";
+  lines +=
+      format("walls     %zu in the graph, %zu of them false", walls.walls.size(), walls.false_walls.size());
+  if (!walls.matches.empty())
+    lines += format("; angle median %.2f deg, max %.2f deg, offset median %.4f m, max %.4f m",
+                    walls.angle_rad.median * 180 / M_PI, walls.angle_rad.max * 180 / M_PI,
+                    walls.offset_m.median, walls.offset_m.max);
+  return lines + "\n";
+}
+
+std::string neesCell(const char* what, const NeesStatistics& s) {
+  return format("%s mean %.2f, median %.2f (%d is right)", what, s.mean, s.median, s.dof);
+}
+
+std::string estimateLines(const EstimateCalibration& e) {
+  std::string lines = "NEES of optimised poses   ";
+  lines += e.pose.count
+               ? neesCell("translation", e.pose_translation) + "; " + neesCell("rotation", e.pose_rotation) +
+                     "; " + neesCell("both", e.pose) + format("; %zu keyframes\n", e.pose.count)
+               : std::string("not judged: graph.json has no covariance of a keyframe\n");
+  lines += "NEES of optimised planes  ";
+  lines += e.plane_tilt.count ? neesCell("tilt", e.plane_tilt) + "; " + neesCell("offset", e.plane_offset) +
+                                    format("; %zu walls\n", e.plane_tilt.count)
+                              : std::string("not judged: no wall lies on a true face\n");
+  return lines;
+}
+
 std::string layerLine(const LayerResult& layer) {
   const std::string asked = layer.asked ? format("; the truth asks for %zu", *layer.asked) : std::string();
   const std::string found = layer.in_graph
@@ -66,6 +102,55 @@ std::string layerLine(const LayerResult& layer) {
 
 Json statisticsJson(const ErrorStatistics& s) {
   return {{"count", s.count}, {"rmse", s.rmse}, {"median", s.median}, {"max", s.max}};
+}
+
+Json neesJson(const NeesStatistics& s) {
+  return {{"dof", s.dof}, {"count", s.count}, {"mean", s.mean}, {"median", s.median}};
+}
+
+Json estimatesJson(const EstimateCalibration& e) {
+  return {{"pose", neesJson(e.pose)},
+          {"pose_translation", neesJson(e.pose_translation)},
+          {"pose_rotation", neesJson(e.pose_rotation)},
+          {"plane_tilt", neesJson(e.plane_tilt)},
+          {"plane_offset", neesJson(e.plane_offset)}};
+}
+
+Json countsJson(const WallResult::Counts& c) {
+  return {{"faces", c.faces}, {"found", c.found}, {"missed", c.missed}, {"doubled", c.doubled}};
+}
+
+Json faceJson(const WallResult& walls, size_t f) {
+  const TrueFace& face = walls.faces[f];
+  Json estimates = Json::array();
+  for (const WallMatch& match : walls.matches)
+    if (match.face == f)
+      estimates.push_back({{"id", walls.walls[match.wall].id},
+                           {"angle_rad", match.angle_rad},
+                           {"offset_m", match.offset_m},
+                           {"samples", match.claimed.size()}});
+  return {{"wall", face.wall},
+          {"begin", {face.begin.x(), face.begin.y()}},
+          {"end", {face.end.x(), face.end.y()}},
+          {"seen_s", face.seen_s},
+          {"asked", walls.asked(f)},
+          {"found", static_cast<bool>(walls.found[f])},
+          {"doubled", static_cast<bool>(walls.doubled[f])},
+          {"estimates", std::move(estimates)}};
+}
+
+Json wallsJson(const WallResult& walls) {
+  if (!walls.missing.empty()) return {{"missing", walls.missing}};
+  Json false_walls = Json::array(), faces = Json::array();
+  for (const size_t w : walls.false_walls) false_walls.push_back(walls.walls[w].id);
+  for (size_t f = 0; f < walls.faces.size(); ++f) faces.push_back(faceJson(walls, f));
+  return {{"in_graph", walls.walls.size()},
+          {"asked", countsJson(walls.counts(true))},
+          {"not_asked", countsJson(walls.counts(false))},
+          {"false", std::move(false_walls)},
+          {"angle_rad", statisticsJson(walls.angle_rad)},
+          {"offset_m", statisticsJson(walls.offset_m)},
+          {"faces", std::move(faces)}};
 }
 
 Json relativeJson(const std::optional<RelativeError>& error) {
@@ -102,7 +187,8 @@ std::string evaluationTable(const Evaluation& evaluation) {
   std::string table = format("%-14s %6s %8s %8s %8s %8s  %17s  %17s %10s\n", "trajectory [m]", "poses", "ATE",
                              "median", "max", "evo", "RPE per 1 m", "RPE per 1 s", "coverage");
   for (const auto& t : evaluation.trajectories) table += trajectoryRow(t);
-  table += mapLines(evaluation.map) + calibrationLines(evaluation);
+  table += mapLines(evaluation.map) + calibrationLines(evaluation) + estimateLines(evaluation.estimates) +
+           wallLines(evaluation.walls);
   for (const auto& layer : evaluation.layers) table += layerLine(layer);
   return table;
 }
@@ -119,6 +205,8 @@ std::string evaluationJson(const Evaluation& evaluation) {
                           {"rotation", c.nees_rotation},
                           {"inside_95_translation", c.inside_translation},
                           {"inside_95_rotation", c.inside_rotation}};
+  json["nees_of_estimates"] = estimatesJson(evaluation.estimates);
+  json["walls"] = wallsJson(evaluation.walls);
   for (const auto& layer : evaluation.layers)
     json["layers"][layer.layer] = {{"in_graph", layer.in_graph},
                                    {"asked", layer.asked ? Json(*layer.asked) : Json(nullptr)}};

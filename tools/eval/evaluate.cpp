@@ -53,6 +53,24 @@ MapResult judgeMap(const std::string& out_dir, const Truth& truth, const SE3& T_
   return result;
 }
 
+std::string whyWallsCannotBeJudged(bool has_graph, const Truth& truth) {
+  if (!has_graph) return "OUT has no graph.json";
+  if (!truth.plan || truth.plan->walls.empty()) return "the truth has no plan.json with walls";
+  if (!truth.mesh) return "the truth has no mesh.ply";
+  return {};
+}
+
+void judgeGraph(const std::string& graph_json_path, const Truth& truth, const SE3& T_truth_map,
+                Evaluation& evaluation) {
+  const bool has_graph = std::filesystem::exists(graph_json_path);
+  EstimatedGraph graph;
+  if (has_graph) graph = readEstimatedGraph(graph_json_path);
+  evaluation.walls.missing = whyWallsCannotBeJudged(has_graph, truth);
+  if (evaluation.walls.missing.empty())
+    evaluation.walls = judgeWalls(*truth.plan, MeshQuery(*truth.mesh), truth.poses, graph.walls, T_truth_map);
+  evaluation.estimates = calibrationOfEstimates(graph, truth.poses, evaluation.walls);
+}
+
 // Counts the graph's nodes by layer, and its doorways, which are links.
 std::map<std::string, size_t> countLayers(const std::string& graph_json_path) {
   std::map<std::string, size_t> counts;
@@ -70,13 +88,12 @@ std::map<std::string, size_t> countLayers(const std::string& graph_json_path) {
 std::vector<LayerResult> judgeLayers(const std::string& out_dir, const Truth& truth) {
   auto counts = countLayers(out_dir + "/graph.json");
   std::vector<LayerResult> layers;
-  for (const char* layer : {"walls", "rooms", "floors", "doorways"})
+  for (const char* layer : {"rooms", "floors", "doorways"})
     layers.push_back({layer, counts[layer], std::nullopt});
   if (truth.plan) {
-    layers[0].asked = truth.plan->num_walls;
-    layers[1].asked = askedRooms(*truth.plan, truth.poses).size();
-    layers[2].asked = truth.plan->floors_z_m.size();
-    layers[3].asked = truth.plan->num_doorways;
+    layers[0].asked = askedRooms(*truth.plan, truth.poses).size();
+    layers[1].asked = truth.plan->floors_z_m.size();
+    layers[2].asked = truth.plan->num_doorways;
   }
   return layers;
 }
@@ -98,6 +115,7 @@ Evaluation evaluate(const std::string& out_dir, const Truth& truth) {
     evaluation.calibration = calibrationOf(readMeasuredLinks(out_dir + "/graph.json"), truth.poses);
   if (evaluation.calibration.empty())
     evaluation.calibration_missing = "graph.json has no links with a covariance in the truth's time";
+  judgeGraph(out_dir + "/graph.json", truth, first.absolute.T_truth_map, evaluation);
   evaluation.layers = judgeLayers(out_dir, truth);
   return evaluation;
 }

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "tools/eval/calibration.h"
+#include "tools/eval/estimate_calibration.h"
 #include "tools/eval/map_error.h"
 #include "tools/eval/trajectory_error.h"
 #include "tools/eval/truth.h"
+#include "tools/eval/wall_error.h"
 
 namespace sgraphs {
 
@@ -34,7 +36,7 @@ struct MapResult {
   bool counts() const { return error.completeness >= kMinCompleteness; }
 };
 
-// A layer that the truth asks for, or the graph has.
+// A layer that the truth asks for, or the graph has, and that is only counted.
 struct LayerResult {
   std::string layer;
   size_t in_graph = 0;
@@ -46,6 +48,8 @@ struct Evaluation {
   MapResult map;
   std::map<std::string, Calibration> calibration;
   std::string calibration_missing;
+  WallResult walls;
+  EstimateCalibration estimates;
   std::vector<LayerResult> layers;
 };
 

@@ -15,12 +15,27 @@ constexpr double kOnFloorLow_m = -0.2;
 constexpr double kOnFloorHigh_m = 1.6;
 constexpr double kMaxRowGap_s = 0.2;  // longer gaps of the truth count for no room
 
+constexpr double kWallHeight_m = 2.5;  // of a wall whose plan does not say
+
+TrueWall wallOf(const nlohmann::json& json) {
+  const auto a = json.at("a").get<std::array<double, 2>>(), b = json.at("b").get<std::array<double, 2>>();
+  const auto z = json.value("z", std::array<double, 2>{0, kWallHeight_m});
+  return {{a[0], a[1]}, {b[0], b[1]}, json.value("thickness", 0.0), z[0], z[1]};
+}
+
+SE3 transformOf(const nlohmann::json& json) {
+  const auto t = json.at("xyz").get<std::array<double, 3>>();
+  const auto q = json.value("qxyzw", std::array<double, 4>{0, 0, 0, 1});
+  return {Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized(), {t[0], t[1], t[2]}};
+}
+
 Plan readPlan(const std::string& path) {
   try {
     const auto json = nlohmann::json::parse(readFile(path));
     Plan plan;
     plan.floors_z_m = json.value("floors", std::vector<double>{});
-    plan.num_walls = json.value("walls", nlohmann::json::array()).size();
+    if (json.contains("T_body_lidar")) plan.T_body_lidar = transformOf(json.at("T_body_lidar"));
+    for (const auto& wall : json.value("walls", nlohmann::json::array())) plan.walls.push_back(wallOf(wall));
     plan.num_doorways = json.value("doorways", nlohmann::json::array()).size();
     for (const auto& room : json.value("rooms", nlohmann::json::array())) {
       TrueRoom read{room.at("id"), room.value("floor", 0), {}};

@@ -18,11 +18,21 @@ struct TrueRoom {
   bool optional() const { return id.rfind("C_", 0) == 0 || id.rfind("corridor", 0) == 0; }
 };
 
+// An upright wall along its centre line from a to b, in the building's frame [m].
+struct TrueWall {
+  Eigen::Vector2d a = Eigen::Vector2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  double thickness_m = 0;
+  double z_low_m = 0;
+  double z_high_m = 0;
+};
+
 // plan.json: what the building is.
 struct Plan {
+  SE3 T_body_lidar;
   std::vector<double> floors_z_m;
   std::vector<TrueRoom> rooms;
-  size_t num_walls = 0;
+  std::vector<TrueWall> walls;
   size_t num_doorways = 0;
 };
 

@@ -19,7 +19,8 @@ TEST(EvalCommandTest, WritesTableJsonAndPlots) {
   testing::internal::CaptureStdout();
   app.parse("eval " + out + " --truth " + truth);
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("trajectory.tum"));
-  for (const char* file : {"eval.json", "eval_trajectory.png", "eval_error.png", "eval_map.png"})
+  for (const char* file :
+       {"eval.json", "eval_trajectory.png", "eval_error.png", "eval_map.png", "eval_walls.png"})
     EXPECT_GT(readFile(out + "/" + file).size(), 500u) << file;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "tests/backend/output/synthetic_planes.h"
 #include "tests/support/temp_folder.h"
 #include "tests/tools/eval/synthetic_building.h"
 #include "tools/eval/eval_report.h"
@@ -60,7 +61,43 @@ TEST(EvaluateTest, TableSaysWhatIsMissingInTheGraph) {
   const Case c;
   const std::string table = evaluationTable(evaluate(c.out, readTruth(c.truth)));
   EXPECT_THAT(table, testing::HasSubstr("rooms     missing in this version's graph; the truth asks for 1\n"));
-  EXPECT_THAT(table, testing::HasSubstr("walls     missing in this version's graph; the truth asks for 4\n"));
+  EXPECT_THAT(table, testing::HasSubstr(
+                         "walls     4 faces seen for 5 s or more: 0 found, 4 missed, 0 doubled; 4 others: "));
+}
+
+// From the graph through graph.json to the figures: walls with tilts and offsets of known size.
+TEST(EvaluateTest, WallsAndTheirCovariancesAreJudgedAsTheGraphHasThem) {
+  Case c;
+  const auto run = test::makeSyntheticRun();
+  test::addRoomPlanes(run->room, run->graph);
+  for (auto& [id, plane] : run->graph.planes) {
+    const TangentBasis uv = tangentBasis(plane.normal_map);
+    plane.normal_map = (plane.normal_map + 1e-3 * uv.col(0) - 2e-3 * uv.col(1)).normalized();
+    plane.offset_m = 3e-3;
+    plane.covariance = Eigen::Vector3d(1e-6, 1e-6, 1e-6).asDiagonal();
+    plane.covariance(0, 1) = plane.covariance(1, 0) = 0.6e-6;
+  }
+  for (const auto& [id, node] : run->graph.keyframes)
+    run->record.keyframe_covariances[id] = Matrix6d::Identity() * 1e-6;
+  writeOutputs(run->record, c.out);
+  const Evaluation e = evaluate(c.out, readTruth(c.truth));
+  EXPECT_EQ(e.walls.counts(true).faces, 4u);
+  EXPECT_EQ(e.walls.counts(true).found, 4u);
+  EXPECT_EQ(e.walls.counts(true).doubled, 0u);
+  EXPECT_EQ(e.walls.counts(false).found, 0u);
+  EXPECT_THAT(e.walls.false_walls, testing::IsEmpty());
+  EXPECT_NEAR(e.walls.angle_rad.max, std::sqrt(5e-6), 1e-5);
+  EXPECT_NEAR(e.walls.offset_m.max, 3e-3, 1e-5);
+  EXPECT_EQ(e.estimates.pose.count, 13u);
+  EXPECT_NEAR(e.estimates.pose.mean, 0, 1e-6);
+  EXPECT_EQ(e.estimates.plane_tilt.count, 4u);
+  // (1, -2) mrad under [1 0.6; 0.6 1] mrad^2: (1 + 4 + 2 * 0.6 * 2) / (1 - 0.36).
+  EXPECT_NEAR(e.estimates.plane_tilt.mean, 7.4 / 0.64, 0.1);
+  EXPECT_NEAR(e.estimates.plane_offset.median, 9, 0.1);
+  EXPECT_THAT(evaluationTable(e), testing::HasSubstr("walls     4 in the graph, 0 of them false; angle"));
+  const auto json = nlohmann::json::parse(evaluationJson(e));
+  EXPECT_EQ(json["walls"]["asked"]["found"], 4);
+  EXPECT_EQ(json["nees_of_estimates"]["plane_tilt"]["count"], 4);
 }
 
 TEST(EvaluateTest, IncompleteMapsDoNotCount) {
@@ -94,6 +131,9 @@ TEST(EvaluateTest, OptionalTruthAndOutputsMayBeAbsent) {
   EXPECT_THAT(table, testing::HasSubstr("map       not judged: the truth has no mesh.ply"));
   EXPECT_THAT(table, testing::HasSubstr("keyframes.tum   not judged: OUT has no such file"));
   EXPECT_THAT(table, testing::HasSubstr("NEES      not judged"));
+  EXPECT_THAT(table, testing::HasSubstr("NEES of optimised poses   not judged"));
+  EXPECT_THAT(table, testing::HasSubstr("NEES of optimised planes  not judged"));
+  EXPECT_THAT(table, testing::HasSubstr("walls     not judged: OUT has no graph.json"));
 }
 
 TEST(EvaluateTest, WhatIsWrongIsSaidInOneLine) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 
 #include "common/io/text_file.h"
@@ -11,6 +12,28 @@ namespace sgraphs::test {
 // Truth of the synthetic run, in a building whose frame is not map.
 inline const SE3 kT_building_map(Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ())),
                                  {20, 30, 0.5});
+
+// The room's four sides as walls without thickness, in the building's frame, which is turned and moved
+// against map.
+inline std::string wallsJson(const BoxRoom& room) {
+  const Eigen::Vector2d corners[] = {{room.min.x(), room.min.y()},
+                                     {room.max.x(), room.min.y()},
+                                     {room.max.x(), room.max.y()},
+                                     {room.min.x(), room.max.y()}};
+  std::string text;
+  const auto at = [&](int i) {
+    return kT_building_map * Eigen::Vector3d(corners[i % 4].x(), corners[i % 4].y(), room.min.z());
+  };
+  for (int i = 0; i < 4; ++i) {
+    char wall[256];
+    std::snprintf(wall, sizeof wall,
+                  R"(%s{"a": [%.9f, %.9f], "b": [%.9f, %.9f], "thickness": 0, "z": [%.9f, %.9f]})",
+                  i ? ", " : "", at(i).x(), at(i).y(), at(i + 1).x(), at(i + 1).y(), at(i).z(),
+                  at(i).z() + room.max.z() - room.min.z());
+    text += wall;
+  }
+  return "[" + text + "]";
+}
 
 inline TriangleMesh meshOf(const BoxRoom& room) {
   TriangleMesh mesh;
@@ -37,7 +60,10 @@ inline void writeTruth(const BoxRoom& room, const std::string& folder) {
   writeTum(folder + "/gt.tum", poses);
   writePlyMesh(folder + "/mesh.ply", meshOf(room));
   // One room around the path, one elsewhere, and a corridor around both.
-  writeFile(folder + "/plan.json", R"({"floors": [0], "walls": [{}, {}, {}, {}], "doorways": [],
+  writeFile(
+      folder + "/plan.json", R"({"floors": [0], "T_body_lidar": {"xyz": [0.1, 0, 0.3], "qxyzw": [0, 0, 0, 1]},
+    "walls": )" + wallsJson(room) +
+                                 R"(, "doorways": [],
     "rooms": [{"id": "R1", "floor": 0, "polygon": [[10, 20], [40, 20], [40, 50], [10, 50]]},
               {"id": "R2", "floor": 0, "polygon": [[110, 20], [140, 20], [140, 50], [110, 50]]},
               {"id": "C_1", "floor": 0, "polygon": [[0, 0], [140, 0], [140, 50], [0, 50]]}]})");
