@@ -22,7 +22,8 @@ struct PlaneObservation {
   // Polygon in the plane: (u, v) from the centroid [m], counter-clockwise seen from the observer, not closed.
   std::vector<Eigen::Vector2f> boundary;
 
-  // n.p + d = 0 in body; positive, since the normal points to the observer.
+  // n.p + d = 0 in body; positive, since the normal points to the observer, unless the body has passed the
+  // plane since (through a doorway, within one keyframe).
   double d() const { return -normal_body.dot(centroid_body); }
 };
 

@@ -16,7 +16,8 @@ struct ViewedPoint {
   double range_m = 0;                                       // from the viewpoint
   int count = 1;                                            // raw points
   uint8_t scan = 0;
-  int32_t facet = -1;  // into FacetCloud::facets; -1: no normal
+  bool explained = false;  // lies on a plane found, whatever its own normal
+  int32_t facet = -1;      // into FacetCloud::facets; -1: no normal
 };
 
 // Sums that a plane can be fitted to.

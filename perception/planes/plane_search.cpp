@@ -24,9 +24,11 @@ PlaneSearch::PlaneSearch(const std::vector<Facet>& facets, const PlaneSearchConf
       min_cos_(std::cos(config.normal_angle_rad)),
       random_state_(seed),
       state_(facets.size(), State::kFree) {
-  for (size_t i = 0; i < facets.size(); ++i)
-    free_.push_back({facets[i].mean.cast<float>(), facets[i].normal.cast<float>(),
-                     static_cast<float>(facets[i].area_m2), static_cast<int32_t>(i)});
+  for (size_t i = 0; i < facets.size(); ++i) {
+    free_.push_back(static_cast<int32_t>(i));
+    if (i == 0 || facets[i].area_m2 < unit_m2_) unit_m2_ = facets[i].area_m2;
+  }
+  dropTaken();
 }
 
 // SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", 2014).
@@ -50,18 +52,37 @@ bool PlaneSearch::agrees(const Facet& facet, const Eigen::Vector3d& normal) cons
   return facet.normal.dot(normal) >= min_cos_;
 }
 
-double PlaneSearch::score(const Candidate& seed) const {
-  const auto min_cos = static_cast<float>(min_cos_), gate_m = static_cast<float>(config_.distance_m);
-  double area_m2 = 0;
-  for (const Candidate& facet : free_) {
-    if (facet.normal.dot(seed.normal) < min_cos) continue;
-    const Eigen::Vector3f delta = facet.mean - seed.mean;
-    const float height = std::abs(seed.normal.dot(delta));
-    if (height > kMaxCone_m) continue;
-    const float above = std::max(height - gate_m, 0.0f);
-    if (above * above <= kConeSlope * kConeSlope * delta.squaredNorm()) area_m2 += facet.area_m2;
+void PlaneSearch::dropTaken() {
+  std::erase_if(free_, [this](int32_t i) { return state_[static_cast<size_t>(i)] == State::kTaken; });
+  for (std::vector<float>& row : rows_) row.clear();
+  areas_.clear();
+  for (const int32_t i : free_) {
+    const Facet& facet = facets_[static_cast<size_t>(i)];
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      rows_[static_cast<size_t>(a)].push_back(static_cast<float>(facet.mean(a)));
+      rows_[static_cast<size_t>(a + 3)].push_back(static_cast<float>(facet.normal(a)));
+    }
+    areas_.push_back(static_cast<int32_t>(std::lround(facet.area_m2 / unit_m2_)));
   }
-  return area_m2;
+}
+
+double PlaneSearch::score(const Facet& seed) const {
+  const Eigen::Vector3f c = seed.mean.cast<float>(), n = seed.normal.cast<float>();
+  const float *x = rows_[0].data(), *y = rows_[1].data(), *z = rows_[2].data(), *nx = rows_[3].data(),
+              *ny = rows_[4].data(), *nz = rows_[5].data();
+  const int32_t* area = areas_.data();
+  const auto min_cos = static_cast<float>(min_cos_), gate_m = static_cast<float>(config_.distance_m);
+  const size_t size = free_.size();
+  int32_t sum = 0;
+  for (size_t i = 0; i < size; ++i) {
+    const float dx = x[i] - c.x(), dy = y[i] - c.y(), dz = z[i] - c.z();
+    const float height = std::abs(n.x() * dx + n.y() * dy + n.z() * dz);
+    const float above = height > gate_m ? height - gate_m : 0.0f;
+    const bool in = (nx[i] * n.x() + ny[i] * n.y() + nz[i] * n.z() >= min_cos) & (height <= kMaxCone_m) &
+                    (above * above <= kConeSlope * kConeSlope * (dx * dx + dy * dy + dz * dz));
+    sum += in ? area[i] : 0;
+  }
+  return unit_m2_ * sum;
 }
 
 Hypothesis PlaneSearch::grow(const Facet& seed) const {
@@ -70,8 +91,8 @@ Hypothesis PlaneSearch::grow(const Facet& seed) const {
   for (int step = 0; step < kGrowthSteps; ++step, radius_m *= 2) {
     PlaneMoments moments;
     int facets = 0;
-    for (const Candidate& candidate : free_) {
-      const Facet& facet = facets_[static_cast<size_t>(candidate.facet)];
+    for (const int32_t i : free_) {
+      const Facet& facet = facets_[static_cast<size_t>(i)];
       if (std::abs(plane.distance(facet.mean)) > config_.distance_m || !agrees(facet, plane.normal)) continue;
       if ((facet.mean - seed.mean).squaredNorm() > radius_m * radius_m) continue;
       moments.add(facet.moments);
@@ -87,28 +108,27 @@ Hypothesis PlaneSearch::grow(const Facet& seed) const {
 }
 
 std::optional<Hypothesis> PlaneSearch::next() {
-  const auto state = [this](const Candidate& c) -> State& { return state_[static_cast<size_t>(c.facet)]; };
-  std::erase_if(free_, [&](const Candidate& c) { return state(c) == State::kTaken; });
+  dropTaken();
+  const auto state = [this](int32_t facet) -> State& { return state_[static_cast<size_t>(facet)]; };
   for (int failures = 0; failures < config_.max_failures; ++failures) {
     seeds_.clear();
-    for (size_t i = 0; i < free_.size(); ++i)
-      if (state(free_[i]) == State::kFree) seeds_.push_back(i);
+    for (const int32_t i : free_)
+      if (state(i) == State::kFree) seeds_.push_back(i);
     if (seeds_.empty()) return std::nullopt;
     double best_m2 = 0;
-    const Candidate* best = nullptr;
+    int32_t best = -1;
     for (int h = 0; h < config_.hypotheses; ++h) {
-      const Candidate& seed = free_[seeds_[random() % seeds_.size()]];
+      const int32_t seed = seeds_[random() % seeds_.size()];
       if (state(seed) != State::kFree) continue;  // drawn and found wanting
-      const double area_m2 = score(seed);
+      const double area_m2 = score(facets_[static_cast<size_t>(seed)]);
       if (area_m2 < min_area_m2_) state(seed) = State::kNoSeed;
-      if (area_m2 > best_m2) {
-        best_m2 = area_m2;
-        best = &seed;
-      }
+      if (area_m2 <= best_m2) continue;
+      best_m2 = area_m2;
+      best = seed;
     }
     if (best_m2 < min_area_m2_) continue;
-    state(*best) = State::kNoSeed;
-    return grow(facets_[static_cast<size_t>(best->facet)]);
+    state(best) = State::kNoSeed;
+    return grow(facets_[static_cast<size_t>(best)]);
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -38,14 +39,8 @@ class PlaneSearch {
  private:
   enum class State : uint8_t { kFree, kNoSeed, kTaken };
 
-  // What scoring reads of a facet that is not taken: it is the inner loop of everything.
-  struct Candidate {
-    Eigen::Vector3f mean, normal;
-    float area_m2;
-    int32_t facet;
-  };
-
-  double score(const Candidate& seed) const;
+  double score(const Facet& seed) const;
+  void dropTaken();
   Hypothesis grow(const Facet& seed) const;
   bool agrees(const Facet& facet, const Eigen::Vector3d& normal) const;
   uint64_t random();
@@ -55,8 +50,14 @@ class PlaneSearch {
   double min_area_m2_, min_cos_;
   uint64_t random_state_;
   std::vector<State> state_;
-  std::vector<Candidate> free_;  // not taken, in order
-  std::vector<size_t> seeds_;    // into free_: those not yet used as a seed
+  std::vector<int32_t> free_;   // facets not taken, in order
+  std::vector<int32_t> seeds_;  // those of them not yet used as a seed
+  // Of free_, for scoring, which is the inner loop of everything: mean, normal [m], area [unit_m2_], one row
+  // each, so that the compiler takes several facets at a time. Areas are counted in integers: a sum of floats
+  // would have to keep its order.
+  std::array<std::vector<float>, 6> rows_;
+  std::vector<int32_t> areas_;
+  double unit_m2_ = 0;
 };
 
 }  // namespace sgraphs

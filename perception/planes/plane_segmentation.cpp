@@ -17,6 +17,9 @@ namespace {
 constexpr int kMaxCorners = 48;  // of a boundary, as messages hold them
 // A surface that is hardly facing the viewpoint has not been seen from there.
 constexpr double kMinFacing = 0.02;
+// A segment is no plane of its own if more than this share of it lies on planes found before: where a wall
+// meets the floor, normals between the two make a bevel that is not there.
+constexpr double kMaxExplained = 0.5;
 // Normals this far from vertical have a horizontal axis worth drawing along.
 constexpr double kMaxUpright = 0.95;
 
@@ -52,7 +55,7 @@ class Run {
     while (const std::optional<Hypothesis> plane = search_.next()) {
       for (const Segment& segment : segmentsOf(*plane)) {
         if (std::optional<PlaneObservation> observation = observe(segment, *plane)) {
-          take(segment);
+          take(segment, *observation);
           found.push_back(std::move(*observation));
         } else {
           for (const int32_t i : segment.core) search_.passOver(point(i).facet);
@@ -70,6 +73,10 @@ class Run {
  private:
   const ViewedPoint& point(int32_t i) const { return cloud_.points[static_cast<size_t>(i)]; }
 
+  bool agrees(const ViewedPoint& p, const Hypothesis& plane) const {
+    return p.facet >= 0 && cloud_.facets[static_cast<size_t>(p.facet)].normal.dot(plane.normal) >= min_cos_;
+  }
+
   // All that may belong to the plane, seen from its front.
   Segment membersOf(const Hypothesis& plane) const {
     Segment members;
@@ -79,7 +86,7 @@ class Run {
       if (plane.normal.dot(p.to_viewpoint) < kMinFacing) continue;
       if (p.facet < 0)
         members.fringe.push_back(i);
-      else if (cloud_.facets[static_cast<size_t>(p.facet)].normal.dot(plane.normal) >= min_cos_)
+      else if (agrees(p, plane))
         members.core.push_back(i);
     }
     return members;
@@ -101,7 +108,7 @@ class Run {
     const TangentBasis axes = gridAxes(plane.normal);
     const std::vector<Eigen::Vector2d> core = project(members.core, axes),
                                        fringe = project(members.fringe, axes);
-    const int radius = std::max(1, static_cast<int>(std::lround(0.5 * config.link_m / config.grid_m)));
+    const int radius = linkRadius();
     PlaneGrid linked(core, config.grid_m, radius + 1);
     PlaneGrid near = linked;
     linked.dilate(radius);
@@ -121,11 +128,17 @@ class Run {
   std::optional<PlaneObservation> observe(const Segment& segment, const Hypothesis& start) const {
     const PlaneSegmentConfig& config = config_.segments;
     int raw_points = 0;
-    for (const int32_t i : segment.core) raw_points += point(i).count;
+    size_t explained = 0;
+    for (const int32_t i : segment.core) {
+      raw_points += point(i).count;
+      explained += point(i).explained;
+    }
     if (raw_points < config.min_points) return std::nullopt;
+    if (static_cast<double>(explained) > kMaxExplained * static_cast<double>(segment.core.size()))
+      return std::nullopt;
     const PlaneFit fit =
         fitPlane(cloud_.points, segment.core, start, config_.search.distance_m, config_.noise);
-    if (!fit.valid || fit.rms_m > config.max_rms_m || fit.plane.d <= 0) return std::nullopt;
+    if (!fit.valid || fit.rms_m > config.max_rms_m) return std::nullopt;
     std::vector<int32_t> all = segment.core;
     all.insert(all.end(), segment.fringe.begin(), segment.fringe.end());
     const TangentBasis axes = gridAxes(fit.plane.normal);
@@ -144,13 +157,37 @@ class Run {
     return plane;
   }
 
-  void take(const Segment& segment) {
+  void take(const Segment& segment, const PlaneObservation& plane) {
+    explain(segment, {plane.normal_body, plane.d()});
     for (const std::vector<int32_t>* members : {&segment.core, &segment.fringe})
       for (const int32_t i : *members) {
         cloud_.points[static_cast<size_t>(i)].count = 0;
         if (point(i).facet >= 0) search_.take(point(i).facet);
       }
     std::erase_if(free_, [this](int32_t i) { return point(i).count == 0; });
+  }
+
+  // Marks the points on the plane, seen from its front, in and around the segment; where the normal is
+  // another, twice as far from it.
+  void explain(const Segment& segment, const Hypothesis& plane) {
+    const TangentBasis axes = gridAxes(plane.normal);
+    const int radius = linkRadius();
+    PlaneGrid grid(project(segment.core, axes), config_.segments.grid_m, radius + 1);
+    grid.dilate(radius);
+    for (const int32_t i : free_) {
+      ViewedPoint& p = cloud_.points[static_cast<size_t>(i)];
+      const double distance_m = std::abs(plane.distance(p.position));
+      if (distance_m > 2 * config_.search.distance_m || plane.normal.dot(p.to_viewpoint) < kMinFacing)
+        continue;
+      if (distance_m > config_.search.distance_m && agrees(p, plane)) continue;
+      if (grid.isFilled(axes.transpose() * p.position)) p.explained = true;
+    }
+  }
+
+  // Dilating by this links cells up to link_m apart.
+  int linkRadius() const {
+    return std::max(1,
+                    static_cast<int>(std::lround(0.5 * config_.segments.link_m / config_.segments.grid_m)));
   }
 
   const PlanesConfig& config_;

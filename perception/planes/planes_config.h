@@ -19,7 +19,7 @@ struct FacetConfig {
 struct PlaneSearchConfig {
   double distance_m = 0.05;
   double normal_angle_rad = 0.45;
-  int hypotheses = 24;
+  int hypotheses = 12;
   int max_failures = 4;
 
   void visit(ConfigVisitor& v);

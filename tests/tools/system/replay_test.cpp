@@ -27,11 +27,13 @@ class ReplayTest : public ::testing::Test {
   static void TearDownTestSuite() { std::filesystem::remove_all(folder); }
 
   static RunRecord replay(const std::string& path, int threads = 1, const std::string& odometry = "",
-                          std::vector<std::string>* warnings = nullptr) {
+                          std::vector<std::string>* warnings = nullptr,
+                          std::vector<std::string> stages = {}) {
     ReplayOptions options;
     options.log = path;
     options.config.odometry.threads = threads;
     options.odometry = odometry;
+    options.stages = std::move(stages);
     Replay replay(std::move(options));
     replay.run();
     if (warnings) *warnings = replay.warnings();
@@ -69,6 +71,14 @@ TEST_F(ReplayTest, GivesTheSameDigestAgainAndAtAnyNumberOfThreads) {
   EXPECT_GT(record.duration_s, 5.0);
   EXPECT_GT(record.realtime_factor, 0.0);
   EXPECT_TRUE(record.gaps.empty());
+}
+
+TEST_F(ReplayTest, SegmentsEveryKeyframeUnlessTheStageIsLeftOut) {
+  const RunRecord with = replay(log, 2), without = replay(log, 2, "", nullptr, {"odometry", "backend"});
+  ASSERT_TRUE(with.stages.contains("planes"));
+  EXPECT_GE(with.stages.at("planes").count, 3) << "one per keyframe of a walk of 3 m";
+  EXPECT_FALSE(without.stages.contains("planes"));
+  EXPECT_TRUE(without.reproducible) << without.why_not;
 }
 
 TEST_F(ReplayTest, TheDigestDependsOnTheOdometryMode) {
