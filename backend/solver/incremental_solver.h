@@ -21,9 +21,7 @@ struct SolverOptions {
   // What the held states at the rim of a neighbourhood would move alone is a fraction of what the chain
   // behind them would move together: in a circle of n equal links, one part in 2 n. So their steps are
   // multiplied by the number of held states, at most by this.
-  double max_leverage = 30;
-  // Poses that see planes are held by these as well as by the chain.
-  double max_leverage_planes = 1;
+  int max_leverage = 30;
   // A neighbourhood grows while that product is above this.
   double grow_step_m = 1e-4;
   double grow_step_rad = 3e-5;
@@ -31,7 +29,18 @@ struct SolverOptions {
   // and what shared states (`up`) would move: more than this calls for a whole-graph solve.
   double drift_m = 1e-3;
   double drift_rad = 1e-4;
-  double shared_drift_rad = 2.5e-4;
+  double shared_drift_rad = 1e-4;
+
+  // In graphs with planes, what the neighbourhood pulls at is left alone below rest_step, passed on by a step
+  // of the whole graph up to max_step, and a matter for a whole-graph solve above. Planes pull at the poses
+  // that see them once they moved by rest_plane.
+  double rest_step_m = 2e-4;
+  double rest_step_rad = 2e-5;
+  double max_step_m = 2e-2;
+  double max_step_rad = 2e-3;
+  double rest_plane_m = 5e-5;
+  double rest_plane_rad = 1e-5;
+  int max_region_planes = 100;  // states
 
   // Solves are done when the root mean square of their steps [m, rad] is below this.
   double settled_step_local = 1e-7;

@@ -105,6 +105,22 @@ int Marginals::tangentSize(int state) const {
   return graph_.manifold(graph_.states.at(static_cast<size_t>(state)).kind).TangentSize();
 }
 
+std::vector<Marginals::StateVector> Marginals::newtonSteps(const std::vector<StateVector>& gradients) const {
+  std::vector<StateVector> steps;
+  if (size_ == 0 || !valid()) return steps;
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(size_);
+  for (const auto& [state, gradient] : gradients) {
+    if (static_cast<size_t>(state) >= columns_.size() || columns_[static_cast<size_t>(state)] < 0) continue;
+    rhs.segment(columns_[static_cast<size_t>(state)], gradient.size()) = -gradient;
+  }
+  const Eigen::VectorXd solution = cholesky_.solve(rhs);
+  for (size_t i = 0; i < columns_.size(); ++i) {
+    const auto state = static_cast<int>(i);
+    if (columns_[i] >= 0) steps.emplace_back(state, solution.segment(columns_[i], tangentSize(state)));
+  }
+  return steps;
+}
+
 std::optional<Eigen::MatrixXd> Marginals::covariance(int state) const {
   return covariance(std::vector<int>{state});
 }

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "backend/solver/state_graph.h"
@@ -12,7 +13,17 @@ namespace sgraphs {
 // J^T J of the whole graph at its present states, factorised: all states but the held ones are free.
 class Marginals {
  public:
+  using StateVector = std::pair<int, Eigen::VectorXd>;  // a state and a vector of its tangent
+
   explicit Marginals(const StateGraph& graph);
+
+  // False: J^T J is singular.
+  bool valid() const { return cholesky_.info() == Eigen::Success; }
+  // States there were; later ones are unknown here.
+  size_t numStates() const { return columns_.size(); }
+  // Of all free states the steps -(J^T J)^-1 g, for the gradients of some; those of unknown or held states do
+  // not count.
+  std::vector<StateVector> newtonSteps(const std::vector<StateVector>& gradients) const;
 
   // The diagonal block of the inverse that belongs to the state: its covariance. Zero for a held state, none
   // if J^T J is singular.

@@ -142,6 +142,11 @@ StepSize StateGraph::newtonStep(int state) const {
   return sizeOf(state, normal.H.completeOrthogonalDecomposition().solve(normal.g));
 }
 
+void StateGraph::move(int state, const Eigen::VectorXd& step, std::array<double, 7>& x) const {
+  const std::array<double, 7> before = x;
+  manifold(states[static_cast<size_t>(state)].kind).Plus(before.data(), step.data(), x.data());
+}
+
 StepSize StateGraph::difference(int state, const std::array<double, 7>& x) const {
   const State& s = states[static_cast<size_t>(state)];
   Eigen::VectorXd step(manifold(s.kind).TangentSize());

@@ -82,6 +82,8 @@ class StateGraph {
   // The Gauss-Newton step of one state, all others held.
   StepSize newtonStep(int state) const;
   StepSize sizeOf(int state, const Eigen::VectorXd& step) const;
+  // Moves x, a value of the state's kind, by a step of its tangent.
+  void move(int state, const Eigen::VectorXd& step, std::array<double, 7>& x) const;
   // From x to the state.
   StepSize difference(int state, const std::array<double, 7>& x) const;
 

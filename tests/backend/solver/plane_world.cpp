@@ -180,34 +180,34 @@ void PlaneRun::addStructure(int plane) {
     add([] { return FacesCost::Create(kStructureSigma_rad); }, {state, other});
 }
 
-PlaneRun::Distance PlaneRun::distanceFromBatch() const {
-  ceres::Problem problem;
-  std::vector<std::array<double, 7>> blocks(poses_.size() + planes_.size() + 1);
-  std::vector<double*> block_of_state(blocks.size(), nullptr);
-  size_t used = 0;
-  const auto put = [&](int state, int size, ceres::Manifold* manifold, const auto& store) {
-    double* x = blocks[used++].data();
-    block_of_state[static_cast<size_t>(state)] = x;
-    store(x);
+PlaneRun::Batch::Batch(const PlaneRun& run) {
+  std::map<int, double*> block_of_state;
+  const auto put = [&](int state, int size, ceres::Manifold* manifold) {
+    double* x = blocks.emplace_back().data();
     problem.AddParameterBlock(x, size, manifold);
+    return block_of_state[state] = x;
   };
-  for (const int state : poses_)
-    put(state, 7, new PoseManifold, [&](double* x) { PoseManifold::store(solver_.pose(state), x); });
-  problem.SetParameterBlockConstant(block_of_state[static_cast<size_t>(poses_[0])]);
-  for (const int state : planes_)
+  for (const int state : run.poses_)
+    PoseManifold::store(run.solver_.pose(state), poses[state] = put(state, 7, new PoseManifold));
+  problem.SetParameterBlockConstant(poses.begin()->second);
+  for (const int state : run.planes_)
     if (state >= 0)
-      put(state, 7, new PlaneManifold, [&](double* x) { PlaneManifold::store(solver_.plane(state), x); });
-  if (up_ >= 0)
-    put(up_, 3, new UnitVectorManifold, [&](double* x) {
-      Eigen::Map<Eigen::Vector3d> up(x);
-      up = solver_.unitVector(up_);
-    });
-  for (const Factor& factor : factors_) {
-    if (!solver_.enabled(factor.id)) continue;
+      PlaneManifold::store(run.solver_.plane(state), planes[state] = put(state, 7, new PlaneManifold));
+  if (run.up_ >= 0) {
+    up = put(run.up_, 3, new UnitVectorManifold);
+    Eigen::Map<Eigen::Vector3d> stored(up);
+    stored = run.solver_.unitVector(run.up_);
+  }
+  for (const Factor& factor : run.factors_) {
+    if (!run.solver_.enabled(factor.id)) continue;
     std::vector<double*> x;
-    for (const int state : factor.states) x.push_back(block_of_state[static_cast<size_t>(state)]);
+    for (const int state : factor.states) x.push_back(block_of_state.at(state));
     problem.AddResidualBlock(factor.create().release(), nullptr, x);
   }
+}
+
+PlaneRun::Distance PlaneRun::distanceFromBatch() const {
+  Batch batch(*this);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
@@ -218,19 +218,16 @@ PlaneRun::Distance PlaneRun::distanceFromBatch() const {
   options.gradient_tolerance = 1e-13;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solve(options, &batch.problem, &summary);
 
   Distance distance;
-  for (const int state : poses_) {
-    const SE3 optimum = PoseManifold::load(block_of_state[static_cast<size_t>(state)]);
-    const SE3 here = solver_.pose(state);
+  for (const auto& [state, x] : batch.poses) {
+    const SE3 optimum = PoseManifold::load(x), here = solver_.pose(state);
     distance.m = std::max(distance.m, (here.translation - optimum.translation).norm());
     distance.rad = std::max(distance.rad, here.rotation.angularDistance(optimum.rotation));
   }
-  for (const int state : planes_) {
-    if (state < 0) continue;
-    const PlaneState optimum = PlaneManifold::load(block_of_state[static_cast<size_t>(state)]);
-    const PlaneState here = solver_.plane(state);
+  for (const auto& [state, x] : batch.planes) {
+    const PlaneState optimum = PlaneManifold::load(x), here = solver_.plane(state);
     distance.plane_m = std::max(distance.plane_m, std::abs(here.offset_m - optimum.offset_m));
     distance.plane_rad = std::max(distance.plane_rad, here.normal.cross(optimum.normal).norm());
   }

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <ceres/cost_function.h>
+#include <ceres/problem.h>
 
+#include <array>
+#include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -67,8 +71,17 @@ class PlaneRun {
     IncrementalSolver::FactorId id = -1;
   };
   const std::vector<Factor>& factors() const { return factors_; }
-  std::vector<Factor>& factors() { return factors_; }
 
+  // The same factors, without the disabled ones, at the solver's states as a plain Ceres problem. The first
+  // pose is constant.
+  struct Batch {
+    ceres::Problem problem;
+    std::deque<std::array<double, 7>> blocks;
+    std::map<int, double*> poses, planes;  // by state of the solver
+    double* up = nullptr;
+
+    explicit Batch(const PlaneRun& run);
+  };
   // How far the solver's states are from the optimum found by plain Ceres from there.
   struct Distance {
     double m = 0, rad = 0;              // of the worst keyframe
