@@ -150,7 +150,7 @@ class Backend::Impl {
     const IncrementalSolver::Report report = builder_.solve(whole);
     output.whole_graph = report.whole;
     if (graph().keyframes.empty()) return;
-    planes_.settle(report.whole);
+    planes_.settle(report.whole, idle);
     const KeyframeId newest = graph().keyframes.rbegin()->first;
     if (report.whole && report.converged) {
       if (newest != graph().keyframes.begin()->first)

@@ -150,11 +150,8 @@ void BackendNode::onPlanesEnd(const stream_end_t& m) {
 
 void BackendNode::finishIfAllEnded() {
   if (!odometry_end_why_not_ || (takesPart("planes") && !planes_end_why_not_)) return;
-  std::string why_not = *odometry_end_why_not_;
-  // A later stage repeats what it was told.
-  if (planes_end_why_not_ && *planes_end_why_not_ != why_not)
-    why_not += (why_not.empty() || planes_end_why_not_->empty() ? "" : "; ") + *planes_end_why_not_;
-  finish(why_not);
+  // A later stage repeats what it was told and adds to it.
+  finish(planes_end_why_not_ ? *planes_end_why_not_ : *odometry_end_why_not_);
 }
 
 void BackendNode::advance() {

@@ -104,8 +104,8 @@ void GraphBuilder::addPlaneUp(PlaneId plane, bool level, double sigma_rad) {
 }
 
 void GraphBuilder::addFaces(PlaneId a, PlaneId b, double sigma_rad) {
-  const int64_t id = add("faces", FacesCost::Create(sigma_rad),
-                         {plane_states_.at(a), plane_states_.at(b)}, kCauchy2);
+  const int64_t id =
+      add("faces", FacesCost::Create(sigma_rad), {plane_states_.at(a), plane_states_.at(b)}, kCauchy2);
   graph_.faces.push_back({id, a, b, sigma_rad});
 }
 

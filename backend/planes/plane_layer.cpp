@@ -7,6 +7,7 @@
 #include "backend/planes/plane_extent.h"
 #include "backend/planes/plane_pairs.h"
 #include "backend/planes/plane_residual.h"
+#include "backend/planes/shared_information.h"
 
 namespace sgraphs {
 namespace {
@@ -77,6 +78,7 @@ PlaneLayer::Sighting PlaneLayer::associate(KeyframeId keyframe, const KeyframePl
   Sighting sighting;
   sighting.observations = planes.planes;
   sighting.candidate = associatePlanes(planes.planes, T_map_body, known, config_.gate);
+  keepSharedError(planes.pose_sigma, sighting.observations);
   sighting.information.setZero();
   for (size_t i = 0; i < sighting.observations.size(); ++i) {
     const auto& candidate = sighting.candidate[i];
@@ -90,7 +92,6 @@ PlaneLayer::Sighting PlaneLayer::associate(KeyframeId keyframe, const KeyframePl
 bool PlaneLayer::add(KeyframeId keyframe, const Sighting& sighting) {
   const KeyframeNode& node = builder_.graph().keyframes.at(keyframe);
   seen_.clear();
-  countTwins(sighting);
   bool circle = false;
   std::vector<PlaneId> mapped;
   for (const auto& [id, track] : tracks_) mapped.push_back(id);
@@ -181,17 +182,21 @@ void PlaneLayer::forgetOld(KeyframeId newest) {
     unmapped_.erase(unmapped_.begin(), unmapped_.end() - static_cast<std::ptrdiff_t>(kMaxUnmapped));
 }
 
-// An observation that fits two mapped planes whose extents meet says that they are one.
-void PlaneLayer::countTwins(const Sighting& sighting) {
-  std::vector<PlaneId> ids;
-  for (const auto& [id, track] : tracks_) ids.push_back(id);
+// Two planes of this round's sight that coincide where both were seen. In an idle round there is time to look
+// at all of them, and no further evidence to wait for.
+void PlaneLayer::countTwins(bool idle) {
   const auto& planes = builder_.graph().planes;
-  for (const auto& candidate : sighting.candidate) {
-    if (!candidate || *candidate >= ids.size()) continue;
-    const PlaneId a = ids[*candidate];
-    for (const PlaneId b : ids)
-      if (a != b && areOneSurface(planes.at(a), planes.at(b), config_.gate)) twins_[std::minmax(a, b)] += 1;
+  std::vector<PlaneId> looked_at = seen_;
+  if (idle) {
+    looked_at.clear();
+    for (const auto& [id, track] : tracks_) looked_at.push_back(id);
   }
+  std::set<std::pair<PlaneId, PlaneId>> counted;
+  for (const PlaneId a : looked_at)
+    for (const auto& [b, plane] : planes) {
+      if (a == b || !areOneSurface(planes.at(a), plane, config_.gate)) continue;
+      if (counted.insert(std::minmax(a, b)).second) twins_[std::minmax(a, b)] += idle ? kTwinEvidence : 1;
+    }
 }
 
 void PlaneLayer::mergeTwins() {
@@ -202,8 +207,13 @@ void PlaneLayer::mergeTwins() {
       it = twins_.erase(it);
       continue;
     }
-    if (it->second < kTwinEvidence || !areOneSurface(planes.at(into), planes.at(from), config_.gate)) {
+    if (it->second < kTwinEvidence) {
       ++it;
+      continue;
+    }
+    // An earlier merge of this round may have changed one of the two.
+    if (!areOneSurface(planes.at(into), planes.at(from), config_.gate)) {
+      it = twins_.erase(it);
       continue;
     }
     builder_.mergePlanes(from, into);
@@ -238,7 +248,8 @@ void PlaneLayer::pairHeights(PlaneId id) {
   }
 }
 
-void PlaneLayer::settle(bool whole) {
+void PlaneLayer::settle(bool whole, bool idle) {
+  countTwins(idle);
   mergeTwins();
   for (const PlaneId id : seen_) {
     pairFaces(id);

@@ -37,7 +37,7 @@ class PlaneLayer {
 
   // After the round's solve: planes that are one are merged, faces and heights paired, extents and labels
   // brought up to date. Where the whole graph was solved all extents are made anew.
-  void settle(bool whole);
+  void settle(bool whole, bool idle);
 
   // Covariances as the whole graph has them now.
   void refreshCovariances();
@@ -73,7 +73,7 @@ class PlaneLayer {
   void observe(KeyframeId keyframe, PlaneId plane, const PlaneObservation& z, Track& track);
   void addUpright(PlaneId plane);
   void forgetOld(KeyframeId newest);
-  void countTwins(const Sighting& sighting);
+  void countTwins(bool idle);
   void mergeTwins();
   void pairFaces(PlaneId plane);
   void pairHeights(PlaneId plane);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "backend/planes/plane_extent.h"
+#include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
 namespace {
@@ -19,9 +20,12 @@ constexpr double kFloorArea_m2 = 4.0;
 
 bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate) {
   if (a.floor != b.floor || a.normal_map.dot(b.normal_map) < std::cos(4 * gate.surface_rad)) return false;
-  if (gapBetween(extentOf(a), extentOn(a, b)) > 0) return false;
-  return std::abs(a.distance(b.centroid_map)) < 2.5 * gate.surface_m &&
-         std::abs(b.distance(a.centroid_map)) < 2.5 * gate.surface_m;
+  // Judged where both were seen: away from there a small difference in tilt would count as distance.
+  const Polygon2d both = intersection(extentOf(a), extentOn(a, b));
+  if (both.empty()) return false;
+  const Eigen::Vector3d p_map =
+      a.anchor_map - a.offset_m * a.normal_map + tangentBasis(a.normal_map) * polygonCentroid(both);
+  return std::abs(b.distance(p_map)) < 2.5 * gate.surface_m;
 }
 
 bool areFacesOfOneWall(const PlaneNode& a, const PlaneNode& b, const Eigen::Vector3d& up_map) {

@@ -4,6 +4,23 @@
 
 namespace sgraphs {
 
+namespace {
+
+// By the pose, of a plane that lies in body at this normal, seen at the observation's axes and centroid.
+Eigen::Matrix<double, 3, 6> byPose(const PlaneObservation& z, const Eigen::Vector3d& n_body) {
+  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+  J.block<2, 3>(0, 3) = tangentBasis(z.normal_body).transpose() * skew(n_body);
+  J.block<1, 3>(2, 0) = -n_body.transpose();
+  J.block<1, 3>(2, 3) = -z.centroid_body.cross(n_body).transpose();
+  return J;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 3, 6> observationByPose(const PlaneObservation& z) {
+  return byPose(z, z.normal_body);
+}
+
 PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, const PlaneNode& plane) {
   const Eigen::Matrix3d R = T_map_body.matrix3();
   const Eigen::Matrix<double, 2, 3> Bt = tangentBasis(z.normal_body).transpose();
@@ -13,10 +30,7 @@ PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, co
 
   PlaneResidual r;
   r.value << Bt * n_body, -plane.normal_map.dot(lever) - plane.offset_m;
-  r.by_pose.setZero();
-  r.by_pose.block<2, 3>(0, 3) = Bt * skew(n_body);
-  r.by_pose.block<1, 3>(2, 0) = -n_body.transpose();
-  r.by_pose.block<1, 3>(2, 3) = -z.centroid_body.cross(n_body).transpose();
+  r.by_pose = byPose(z, n_body);
   r.by_plane.setZero();
   r.by_plane.block<2, 2>(0, 0) = Bt * R.transpose() * U;
   r.by_plane.block<1, 2>(2, 0) = -lever.transpose() * U;

@@ -13,6 +13,9 @@ struct PlaneResidual {
 };
 PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, const PlaneNode& plane);
 
+// How an observation's (tilt_u, tilt_v, offset) changes with the pose it is seen from, tangent of body.
+Eigen::Matrix<double, 3, 6> observationByPose(const PlaneObservation& z);
+
 // Covariance of a plane's tangent, carried from one point on the plane to another: the lever turns tilt into
 // offset. u, v are tangentBasis(normal).
 Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal,

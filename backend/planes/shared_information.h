@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "common/geometry/se3.h"
+#include "common/types/plane.h"
 
 namespace sgraphs {
 
@@ -12,5 +15,12 @@ namespace sgraphs {
 //   planes: information about the pose of `to` (same tangent) from planes that were mapped before
 // strength 0 changes nothing.
 Matrix6d withoutSharedInformation(const Matrix6d& covariance, const Matrix6d& planes, double strength);
+
+// The planes of one keyframe share the error of the keyframe's pose in its cloud (pose_sigma, contained in
+// each covariance). As independent observations, n planes would average it down to 1/n, which more planes
+// cannot do. So each covariance gets the shared part n - 1 times more, with n, by direction, the number of
+// planes' worth of information about it: together they then say as much of the pose as the shared error
+// allows.
+void keepSharedError(const Vector6d& pose_sigma, std::vector<PlaneObservation>& planes);
 
 }  // namespace sgraphs

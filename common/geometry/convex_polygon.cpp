@@ -62,8 +62,8 @@ double polygonArea(const Polygon2d& polygon) {
 }
 
 // Sutherland and Hodgman: a is cut by each edge of b.
-double overlapArea(const Polygon2d& a, const Polygon2d& b) {
-  if (a.size() < 3 || b.size() < 3) return 0;
+Polygon2d intersection(const Polygon2d& a, const Polygon2d& b) {
+  if (a.size() < 3 || b.size() < 3) return {};
   Polygon2d rest = a;
   for (size_t i = 0; i < b.size() && !rest.empty(); ++i) {
     const Eigen::Vector2d& from = b[i];
@@ -79,7 +79,11 @@ double overlapArea(const Polygon2d& a, const Polygon2d& b) {
     }
     rest = std::move(kept);
   }
-  return std::max(0.0, polygonArea(rest));
+  return rest.size() < 3 ? Polygon2d{} : rest;
+}
+
+double overlapArea(const Polygon2d& a, const Polygon2d& b) {
+  return std::max(0.0, polygonArea(intersection(a, b)));
 }
 
 double gapBetween(const Polygon2d& a, const Polygon2d& b) {

@@ -14,7 +14,8 @@ Polygon2d convexHull(Polygon2d points);
 // Signed: positive for counter-clockwise.
 double polygonArea(const Polygon2d& polygon);
 
-// Area of the intersection of two convex polygons.
+// Intersection of two convex polygons; empty if they do not meet.
+Polygon2d intersection(const Polygon2d& a, const Polygon2d& b);
 double overlapArea(const Polygon2d& a, const Polygon2d& b);
 
 // Distance between two convex polygons; 0 if they meet.

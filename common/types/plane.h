@@ -6,6 +6,7 @@
 
 #include "common/base/ids.h"
 #include "common/base/time.h"
+#include "common/geometry/se3.h"
 
 namespace sgraphs {
 
@@ -32,6 +33,9 @@ struct KeyframePlanes {
   KeyframeId keyframe;
   Time time;  // of the keyframe
   std::vector<PlaneObservation> planes;
+  // Standard deviations, translation [m] then rotation [rad] in body, of the keyframe's own pose in the cloud
+  // that the planes were seen in: an error that all of them share, contained in each covariance.
+  Vector6d pose_sigma = Vector6d::Zero();
 };
 
 // The map axis a mapped plane's normal is nearest to, relative to the building's own axes.

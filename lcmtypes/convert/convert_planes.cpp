@@ -57,6 +57,7 @@ keyframe_planes_t toMessage(const KeyframePlanes& planes) {
   keyframe_planes_t m{};
   m.header.utime = planes.time.us;
   m.keyframe = planes.keyframe.value;
+  for (int i = 0; i < 6; ++i) m.pose_sigma[i] = planes.pose_sigma[i];
   m.num_planes = static_cast<int32_t>(planes.planes.size());
   for (const PlaneObservation& plane : planes.planes) m.planes.push_back(toMessage(plane));
   return m;
@@ -67,6 +68,8 @@ std::optional<KeyframePlanes> fromMessage(const keyframe_planes_t& m) {
   KeyframePlanes planes;
   planes.keyframe = KeyframeId{m.keyframe};
   planes.time = Time{m.header.utime};
+  planes.pose_sigma = Vector6d(m.pose_sigma);
+  if (!planes.pose_sigma.allFinite() || (planes.pose_sigma.array() < 0).any()) return std::nullopt;
   for (const plane_t& plane : m.planes) {
     const std::optional<PlaneObservation> observation = fromMessage(plane);
     if (!observation) return std::nullopt;

@@ -33,11 +33,8 @@ Eigen::Matrix3d floorOf(const PlaneFit& fit, const TangentBasis& axes, const Pla
   J.row(0) << 0, 0, 0, n.cross(axes.col(0)).transpose();
   J.row(1) << 0, 0, 0, n.cross(axes.col(1)).transpose();
   J.row(2) << n.transpose(), fit.centroid.cross(n).transpose();
-  Eigen::Matrix<double, 6, 1> sigma;
-  sigma << noise.offset_floor_m, noise.offset_floor_m, noise.height_floor_m,
-      Eigen::Vector3d::Constant(noise.tilt_floor_rad);
   // An exact cloud without floors still is no perfect knowledge: the covariance stays regular.
-  return J * sigma.cwiseAbs2().asDiagonal() * J.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
+  return J * noise.poseSigma().cwiseAbs2().asDiagonal() * J.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
 }
 
 // Normal equations of (tilt_u, tilt_v, offset) at the centroid: a point's distance from the true plane is

@@ -202,6 +202,7 @@ class Run {
 KeyframePlanes PlaneSegmentation::step(const Keyframe& keyframe) const {
   KeyframePlanes result;
   result.keyframe = keyframe.id;
+  result.pose_sigma = config_.noise.poseSigma();
   result.time = keyframe.time;
   result.planes = Run(keyframe, config_).planes();
   return result;

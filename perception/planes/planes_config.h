@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/config/config_io.h"
+#include "common/geometry/se3.h"
 
 namespace sgraphs {
 
@@ -46,6 +47,13 @@ struct PlaneNoiseConfig {
   double offset_floor_m = 0.0015;
   double height_floor_m = 0.006;
   double tilt_floor_rad = 0.0014;
+
+  // The floors as one: of the keyframe's own pose in its cloud, translation [m] then rotation [rad] in body.
+  Vector6d poseSigma() const {
+    Vector6d sigma;
+    sigma << offset_floor_m, offset_floor_m, height_floor_m, Eigen::Vector3d::Constant(tilt_floor_rad);
+    return sigma;
+  }
 
   void visit(ConfigVisitor& v);
 };

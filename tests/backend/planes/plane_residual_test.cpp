@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "backend/planes/shared_information.h"
 #include "tests/backend/planes/plane_world.h"
 
@@ -101,6 +103,43 @@ TEST(SharedInformationTest, DoesNotDependOnCoordinates) {
   const Matrix6d turned = withoutSharedInformation(A * covariance * A.transpose(),
                                                    A.inverse().transpose() * planes * A.inverse(), 7);
   EXPECT_TRUE(turned.isApprox(A * withoutSharedInformation(covariance, planes, 7) * A.transpose(), 1e-9));
+}
+
+// Six planes that know everything but the shared error must not know more than it allows together.
+TEST(SharedInformationTest, SharedErrorIsNotAveragedDownByMorePlanes) {
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(0.002), Eigen::Vector3d::Constant(0.0015);
+  std::vector<PlaneObservation> planes;
+  for (const Eigen::Vector3d& n : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)})
+    for (const double side : {-1.0, 1.0}) {
+      Face face{-2 * side * n, side * n};
+      PlaneObservation z = observe(face, SE3());
+      const Eigen::Matrix<double, 3, 6> J = observationByPose(z);
+      z.covariance = J * sigma.cwiseAbs2().asDiagonal() * J.transpose() + 1e-9 * Eigen::Matrix3d::Identity();
+      planes.push_back(z);
+    }
+  const auto poseCovariance = [&] {
+    Matrix6d information = Matrix6d::Zero();
+    for (const PlaneObservation& z : planes) {
+      const Eigen::Matrix<double, 3, 6> J = observationByPose(z);
+      information += J.transpose() * z.covariance.inverse() * J;
+    }
+    return Matrix6d(information.inverse());
+  };
+  EXPECT_LT(poseCovariance()(3, 3), 0.4 * sigma(3) * sigma(3)) << "as if independent";
+  keepSharedError(sigma, planes);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(poseCovariance()(i, i), sigma(i) * sigma(i), 0.2 * sigma(i) * sigma(i));
+}
+
+TEST(SharedInformationTest, OnePlaneKeepsItsCovariance) {
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(0.002), Eigen::Vector3d::Constant(0.0015);
+  std::vector<PlaneObservation> planes{observe(kWall, kPose)};
+  const Eigen::Matrix<double, 3, 6> J = observationByPose(planes[0]);
+  planes[0].covariance += J * sigma.cwiseAbs2().asDiagonal() * J.transpose();
+  const Eigen::Matrix3d before = planes[0].covariance;
+  keepSharedError(sigma, planes);
+  EXPECT_TRUE(planes[0].covariance.isApprox(before, 1e-9));
 }
 
 }  // namespace
