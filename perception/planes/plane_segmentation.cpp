@@ -20,6 +20,9 @@ constexpr double kMinFacing = 0.02;
 // A segment is no plane of its own if more than this share of it lies on planes found before: where a wall
 // meets the floor, normals between the two make a bevel that is not there.
 constexpr double kMaxExplained = 0.5;
+// Half width of a plane in standard deviations of the cloud's noise, and its limit.
+constexpr double kGateSigmas = 4;
+constexpr double kMaxGate_m = 0.15;
 // Normals this far from vertical have a horizontal axis worth drawing along.
 constexpr double kMaxUpright = 0.95;
 
@@ -33,6 +36,12 @@ TangentBasis gridAxes(const Eigen::Vector3d& normal) {
   return axes;
 }
 
+// A noisier LiDAR needs a wider gate, or the tails of its noise become planes beside the plane.
+PlaneSearchConfig widened(PlaneSearchConfig config, double thickness_m) {
+  config.distance_m = std::max(config.distance_m, std::min(kGateSigmas * thickness_m, kMaxGate_m));
+  return config;
+}
+
 // Points of one connected segment, by index.
 struct Segment {
   std::vector<int32_t> core;    // with a normal of their own: they decide the plane
@@ -44,7 +53,8 @@ class Run {
   Run(const Keyframe& keyframe, const PlanesConfig& config)
       : config_(config),
         cloud_(makeFacets(keyframe, config.facets)),
-        search_(cloud_.facets, config.search, config.segments.min_area_m2,
+        search_config_(widened(config.search, cloud_.thickness_m)),
+        search_(cloud_.facets, search_config_, config.segments.min_area_m2,
                 static_cast<uint64_t>(keyframe.id.value)),
         min_cos_(std::cos(config.search.normal_angle_rad)) {
     for (size_t i = 0; i < cloud_.points.size(); ++i) free_.push_back(static_cast<int32_t>(i));
@@ -82,7 +92,7 @@ class Run {
     Segment members;
     for (const int32_t i : free_) {
       const ViewedPoint& p = point(i);
-      if (std::abs(plane.distance(p.position)) > config_.search.distance_m) continue;
+      if (std::abs(plane.distance(p.position)) > search_config_.distance_m) continue;
       if (plane.normal.dot(p.to_viewpoint) < kMinFacing) continue;
       if (p.facet < 0)
         members.fringe.push_back(i);
@@ -137,7 +147,7 @@ class Run {
     if (static_cast<double>(explained) > kMaxExplained * static_cast<double>(segment.core.size()))
       return std::nullopt;
     const PlaneFit fit =
-        fitPlane(cloud_.points, segment.core, start, config_.search.distance_m, config_.noise);
+        fitPlane(cloud_.points, segment.core, start, search_config_.distance_m, config_.noise);
     if (!fit.valid || fit.rms_m > config.max_rms_m) return std::nullopt;
     std::vector<int32_t> all = segment.core;
     all.insert(all.end(), segment.fringe.begin(), segment.fringe.end());
@@ -177,9 +187,9 @@ class Run {
     for (const int32_t i : free_) {
       ViewedPoint& p = cloud_.points[static_cast<size_t>(i)];
       const double distance_m = std::abs(plane.distance(p.position));
-      if (distance_m > 2 * config_.search.distance_m || plane.normal.dot(p.to_viewpoint) < kMinFacing)
+      if (distance_m > 2 * search_config_.distance_m || plane.normal.dot(p.to_viewpoint) < kMinFacing)
         continue;
-      if (distance_m > config_.search.distance_m && agrees(p, plane)) continue;
+      if (distance_m > search_config_.distance_m && agrees(p, plane)) continue;
       if (grid.isFilled(axes.transpose() * p.position)) p.explained = true;
     }
   }
@@ -192,6 +202,7 @@ class Run {
 
   const PlanesConfig& config_;
   FacetCloud cloud_;
+  PlaneSearchConfig search_config_;
   PlaneSearch search_;
   double min_cos_;
   std::vector<int32_t> free_;  // points of no plane yet
