@@ -1,5 +1,6 @@
 #include "perception/planes/plane_segmentation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -42,6 +43,21 @@ PlaneSearchConfig widened(PlaneSearchConfig config, double thickness_m) {
   return config;
 }
 
+// Whether a segment is made of the outliers of a plane found before: just beyond its gate, within its
+// outline, facing the same way, and with a tenth of its points per area. A board before a wall has as many as
+// the wall.
+bool isTailOf(const PlaneObservation& plane, const PlaneObservation& found, double gate_m, double min_cos) {
+  const Eigen::Vector3d delta = plane.centroid_body - found.centroid_body;
+  const double distance_m = std::abs(found.normal_body.dot(delta));
+  if (distance_m < 0.5 * gate_m || distance_m > 3 * gate_m) return false;
+  if (plane.normal_body.dot(found.normal_body) < min_cos) return false;
+  if (10 * plane.num_points * found.area_m2 > found.num_points * plane.area_m2) return false;
+  const Eigen::Vector2f at = (tangentBasis(found.normal_body).transpose() * delta).cast<float>();
+  Eigen::AlignedBox2f bounds;
+  for (const Eigen::Vector2f& corner : found.boundary) bounds.extend(corner);
+  return bounds.contains(at);
+}
+
 // Points of one connected segment, by index.
 struct Segment {
   std::vector<int32_t> core;    // with a normal of their own: they decide the plane
@@ -64,7 +80,11 @@ class Run {
     std::vector<PlaneObservation> found;
     while (const std::optional<Hypothesis> plane = search_.next()) {
       for (const Segment& segment : segmentsOf(*plane)) {
-        if (std::optional<PlaneObservation> observation = observe(segment, *plane)) {
+        std::optional<PlaneObservation> observation = observe(segment, *plane);
+        const bool tail = observation && std::any_of(found.begin(), found.end(), [&](const auto& other) {
+                            return isTailOf(*observation, other, search_config_.distance_m, min_cos_);
+                          });
+        if (observation && !tail) {
           take(segment, *observation);
           found.push_back(std::move(*observation));
         } else {
