@@ -105,8 +105,13 @@ class CellGrid {
   VoxelIndex index_;
 };
 
-// Normal without sign; nothing where the points are no surface, or too few to tell.
-std::optional<Eigen::Vector3d> normalOf(const PlaneMoments& moments, const FacetConfig& config) {
+struct Surface {
+  Eigen::Vector3d normal;  // without sign
+  double thickness_m;
+};
+
+// Nothing where the points are no surface, or too few to tell.
+std::optional<Surface> surfaceOf(const PlaneMoments& moments, const FacetConfig& config) {
   if (moments.weight < config.min_points) return std::nullopt;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
   eigen.computeDirect(moments.covariance());
@@ -116,7 +121,7 @@ std::optional<Eigen::Vector3d> normalOf(const PlaneMoments& moments, const Facet
   // Variance of an eigenvector (Anderson, "Asymptotic theory for principal component analysis", 1963).
   const double variance = thin * wide / (moments.weight * (wide - thin) * (wide - thin));
   if (variance > config.max_normal_sigma_rad * config.max_normal_sigma_rad) return std::nullopt;
-  return eigen.eigenvectors().col(0).normalized();
+  return Surface{eigen.eigenvectors().col(0).normalized(), std::sqrt(thin)};
 }
 
 }  // namespace
@@ -127,10 +132,18 @@ FacetCloud makeFacets(const Keyframe& keyframe, const FacetConfig& config) {
   CellGrid grid(config);
   for (const ViewedPoint& point : cloud.points) grid.add(point);
   std::vector<Eigen::Vector3d> normals(grid.cells.size(), Eigen::Vector3d::Zero());
+  std::vector<double> thickness;
   grid.forEachNeighbourhood([&](const Cell& cell, const PlaneMoments& moments) {
-    if (const auto normal = normalOf(moments, config))
-      normals[static_cast<size_t>(&cell - grid.cells.data())] = *normal;
+    const std::optional<Surface> surface = surfaceOf(moments, config);
+    if (!surface) return;
+    normals[static_cast<size_t>(&cell - grid.cells.data())] = surface->normal;
+    thickness.push_back(surface->thickness_m);
   });
+  if (!thickness.empty()) {
+    const auto middle = thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2);
+    std::nth_element(thickness.begin(), middle, thickness.end());
+    cloud.thickness_m = *middle;
+  }
   for (size_t i = 0; i < cloud.points.size(); ++i) {
     ViewedPoint& point = cloud.points[i];
     const auto c = static_cast<size_t>(grid.cell_of_point[i]);

@@ -52,6 +52,7 @@ struct Facet {
 struct FacetCloud {
   std::vector<ViewedPoint> points;
   std::vector<Facet> facets;
+  double thickness_m = 0;  // median standard deviation of the surfaces: the noise of this cloud
 };
 
 // The surface's direction comes from the points of a cell and its 26 neighbours, its sign from each point's

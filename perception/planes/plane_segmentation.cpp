@@ -1,5 +1,6 @@
 #include "perception/planes/plane_segmentation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -20,6 +21,9 @@ constexpr double kMinFacing = 0.02;
 // A segment is no plane of its own if more than this share of it lies on planes found before: where a wall
 // meets the floor, normals between the two make a bevel that is not there.
 constexpr double kMaxExplained = 0.5;
+// Half width of a plane in standard deviations of the cloud's noise, and its limit.
+constexpr double kGateSigmas = 4;
+constexpr double kMaxGate_m = 0.15;
 // Normals this far from vertical have a horizontal axis worth drawing along.
 constexpr double kMaxUpright = 0.95;
 
@@ -33,6 +37,27 @@ TangentBasis gridAxes(const Eigen::Vector3d& normal) {
   return axes;
 }
 
+// A noisier LiDAR needs a wider gate, or the tails of its noise become planes beside the plane.
+PlaneSearchConfig widened(PlaneSearchConfig config, double thickness_m) {
+  config.distance_m = std::max(config.distance_m, std::min(kGateSigmas * thickness_m, kMaxGate_m));
+  return config;
+}
+
+// Whether a segment is made of the outliers of a plane found before: just beyond its gate, within its
+// outline, facing the same way, and with a tenth of its points per area. A board before a wall has as many as
+// the wall.
+bool isTailOf(const PlaneObservation& plane, const PlaneObservation& found, double gate_m, double min_cos) {
+  const Eigen::Vector3d delta = plane.centroid_body - found.centroid_body;
+  const double distance_m = std::abs(found.normal_body.dot(delta));
+  if (distance_m < 0.5 * gate_m || distance_m > 3 * gate_m) return false;
+  if (plane.normal_body.dot(found.normal_body) < min_cos) return false;
+  if (10 * plane.num_points * found.area_m2 > found.num_points * plane.area_m2) return false;
+  const Eigen::Vector2f at = (tangentBasis(found.normal_body).transpose() * delta).cast<float>();
+  Eigen::AlignedBox2f bounds;
+  for (const Eigen::Vector2f& corner : found.boundary) bounds.extend(corner);
+  return bounds.contains(at);
+}
+
 // Points of one connected segment, by index.
 struct Segment {
   std::vector<int32_t> core;    // with a normal of their own: they decide the plane
@@ -44,7 +69,8 @@ class Run {
   Run(const Keyframe& keyframe, const PlanesConfig& config)
       : config_(config),
         cloud_(makeFacets(keyframe, config.facets)),
-        search_(cloud_.facets, config.search, config.segments.min_area_m2,
+        search_config_(widened(config.search, cloud_.thickness_m)),
+        search_(cloud_.facets, search_config_, config.segments.min_area_m2,
                 static_cast<uint64_t>(keyframe.id.value)),
         min_cos_(std::cos(config.search.normal_angle_rad)) {
     for (size_t i = 0; i < cloud_.points.size(); ++i) free_.push_back(static_cast<int32_t>(i));
@@ -54,7 +80,11 @@ class Run {
     std::vector<PlaneObservation> found;
     while (const std::optional<Hypothesis> plane = search_.next()) {
       for (const Segment& segment : segmentsOf(*plane)) {
-        if (std::optional<PlaneObservation> observation = observe(segment, *plane)) {
+        std::optional<PlaneObservation> observation = observe(segment, *plane);
+        const bool tail = observation && std::any_of(found.begin(), found.end(), [&](const auto& other) {
+                            return isTailOf(*observation, other, search_config_.distance_m, min_cos_);
+                          });
+        if (observation && !tail) {
           take(segment, *observation);
           found.push_back(std::move(*observation));
         } else {
@@ -82,7 +112,7 @@ class Run {
     Segment members;
     for (const int32_t i : free_) {
       const ViewedPoint& p = point(i);
-      if (std::abs(plane.distance(p.position)) > config_.search.distance_m) continue;
+      if (std::abs(plane.distance(p.position)) > search_config_.distance_m) continue;
       if (plane.normal.dot(p.to_viewpoint) < kMinFacing) continue;
       if (p.facet < 0)
         members.fringe.push_back(i);
@@ -137,7 +167,7 @@ class Run {
     if (static_cast<double>(explained) > kMaxExplained * static_cast<double>(segment.core.size()))
       return std::nullopt;
     const PlaneFit fit =
-        fitPlane(cloud_.points, segment.core, start, config_.search.distance_m, config_.noise);
+        fitPlane(cloud_.points, segment.core, start, search_config_.distance_m, config_.noise);
     if (!fit.valid || fit.rms_m > config.max_rms_m) return std::nullopt;
     std::vector<int32_t> all = segment.core;
     all.insert(all.end(), segment.fringe.begin(), segment.fringe.end());
@@ -177,9 +207,9 @@ class Run {
     for (const int32_t i : free_) {
       ViewedPoint& p = cloud_.points[static_cast<size_t>(i)];
       const double distance_m = std::abs(plane.distance(p.position));
-      if (distance_m > 2 * config_.search.distance_m || plane.normal.dot(p.to_viewpoint) < kMinFacing)
+      if (distance_m > 2 * search_config_.distance_m || plane.normal.dot(p.to_viewpoint) < kMinFacing)
         continue;
-      if (distance_m > config_.search.distance_m && agrees(p, plane)) continue;
+      if (distance_m > search_config_.distance_m && agrees(p, plane)) continue;
       if (grid.isFilled(axes.transpose() * p.position)) p.explained = true;
     }
   }
@@ -192,6 +222,7 @@ class Run {
 
   const PlanesConfig& config_;
   FacetCloud cloud_;
+  PlaneSearchConfig search_config_;
   PlaneSearch search_;
   double min_cos_;
   std::vector<int32_t> free_;  // points of no plane yet

@@ -13,7 +13,8 @@ void FacetConfig::visit(ConfigVisitor& v) {
 }
 
 void PlaneSearchConfig::visit(ConfigVisitor& v) {
-  v.field("distance_m", distance_m, 0.005, 0.5, "Points this close may belong to a plane");
+  v.field("distance_m", distance_m, 0.005, 0.5,
+          "Points this close may belong to a plane; in a noisier cloud, four standard deviations");
   v.field("normal_angle_rad", normal_angle_rad, 0.05, 1.5,
           "Their normals differ from the plane's by less than this");
   v.field("hypotheses", hypotheses, 1, 10000, "Hypotheses drawn per plane");

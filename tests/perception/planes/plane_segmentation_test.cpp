@@ -152,6 +152,17 @@ TEST(PlaneSegmentationTest, APersonLeaningOnAWallHardlyMovesIt) {
   EXPECT_LT(angleBetween(wall[0].normal_body, {-1, 0, 0}), 0.004);
 }
 
+TEST(PlaneSegmentationTest, ANoisyWallIsStillOneWall) {
+  for (const double noise_m : {0.005, 0.015, 0.03}) {
+    CloudMaker cloud;
+    cloud.addRectangle({3, -2, -0.5}, {0, 4, 0}, {0, 0, 2}, noise_m, 0.04);
+    const auto planes = planesOf(cloud.keyframe);
+    ASSERT_EQ(planes.size(), 1u) << noise_m;
+    EXPECT_NEAR(planes[0].d(), 3.0, 0.005);
+    EXPECT_NEAR(planes[0].rms_m, noise_m, 0.25 * noise_m);
+  }
+}
+
 TEST(PlaneSegmentationTest, GlassInventsNoPlane) {
   // A front of glass at x = 3 returns a spot of 20 cm where the beams hit it square; beyond it the beams hit
   // clutter at all depths.
