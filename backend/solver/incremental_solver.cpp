@@ -25,13 +25,15 @@ IncrementalSolver::~IncrementalSolver() = default;
 
 IncrementalSolver::StateId IncrementalSolver::addPose(const SE3& T) {
   const StateId id = impl_->graph.addState(StateKind::kPose);
-  setPose(id, T);
+  PoseManifold::store(T, impl_->graph.states.back().x.data());
+  impl_->forgetMarginals();
   return id;
 }
 
 IncrementalSolver::StateId IncrementalSolver::addPlane(const PlaneState& plane) {
   const StateId id = impl_->graph.addState(StateKind::kPlane);
-  setPlane(id, plane);
+  PlaneManifold::store(plane, impl_->graph.states.back().x.data());
+  impl_->forgetMarginals();
   return id;
 }
 
@@ -80,7 +82,7 @@ SE3 IncrementalSolver::pose(StateId state) const {
 }
 
 void IncrementalSolver::setPose(StateId state, const SE3& T) {
-  impl_->forgetMarginals();
+  impl_->forgetWhole();
   PoseManifold::store(T, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
 }
 
@@ -89,7 +91,7 @@ PlaneState IncrementalSolver::plane(StateId state) const {
 }
 
 void IncrementalSolver::setPlane(StateId state, const PlaneState& plane) {
-  impl_->forgetMarginals();
+  impl_->forgetWhole();
   PlaneManifold::store(plane, impl_->graph.states.at(static_cast<size_t>(state)).x.data());
 }
 
@@ -98,7 +100,7 @@ Eigen::Vector3d IncrementalSolver::unitVector(StateId state) const {
 }
 
 void IncrementalSolver::setUnitVector(StateId state, const Eigen::Vector3d& n) {
-  impl_->forgetMarginals();
+  impl_->forgetWhole();
   std::copy_n(n.data(), 3, impl_->graph.states.at(static_cast<size_t>(state)).x.begin());
 }
 

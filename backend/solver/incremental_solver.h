@@ -32,14 +32,13 @@ struct SolverOptions {
   double shared_drift_rad = 1e-4;
 
   // In graphs with planes, what the neighbourhood pulls at is left alone below rest_step, passed on by a step
-  // of the whole graph up to max_step, and a matter for a whole-graph solve above. Planes pull at the poses
-  // that see them once they moved by rest_plane.
-  double rest_step_m = 2e-4;
-  double rest_step_rad = 2e-5;
-  double max_step_m = 2e-2;
-  double max_step_rad = 2e-3;
-  double rest_plane_m = 5e-5;
-  double rest_plane_rad = 1e-5;
+  // of the whole graph up to max_step, and a matter for a whole-graph solve above.
+  double rest_step_m = 3e-4;
+  double rest_step_rad = 3e-5;
+  double max_step_m = 0.1;
+  double max_step_rad = 5e-3;
+  double drift_planes_m = 5e-3;  // as drift_m and drift_rad
+  double drift_planes_rad = 3e-4;
   int max_region_planes = 100;  // states
 
   // Solves are done when the root mean square of their steps [m, rad] is below this.
@@ -69,7 +68,7 @@ class IncrementalSolver {
 
   StateId addPose(const SE3& T);
   StateId addPlane(const PlaneState& plane);
-  // A direction shared by many factors: free in whole-graph solves only, and no path for neighbourhoods.
+  // A direction shared by many factors: no path for neighbourhoods, and moved only with the whole graph.
   StateId addSharedUnitVector(const Eigen::Vector3d& n);
   // Held states never move: the gauge.
   void hold(StateId state);
@@ -84,7 +83,8 @@ class IncrementalSolver {
   // Binds the factor to another state of the same kind. Throws std::logic_error if it has that one already.
   void rebind(FactorId factor, StateId from, StateId to);
 
-  // Setting a state does not call for a solve by itself: the next one starts from there.
+  // Setting a state does not call for a solve by itself: the next one starts from there, and where there are
+  // planes it is one of the whole graph.
   SE3 pose(StateId state) const;
   void setPose(StateId state, const SE3& T);
   PlaneState plane(StateId state) const;

@@ -105,7 +105,8 @@ int Marginals::tangentSize(int state) const {
   return graph_.manifold(graph_.states.at(static_cast<size_t>(state)).kind).TangentSize();
 }
 
-std::vector<Marginals::StateVector> Marginals::newtonSteps(const std::vector<StateVector>& gradients) const {
+std::vector<Marginals::StateVector> Marginals::newtonSteps(
+    const std::map<int, Eigen::VectorXd>& gradients) const {
   std::vector<StateVector> steps;
   if (size_ == 0 || !valid()) return steps;
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(size_);

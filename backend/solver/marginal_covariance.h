@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ class Marginals {
   size_t numStates() const { return columns_.size(); }
   // Of all free states the steps -(J^T J)^-1 g, for the gradients of some; those of unknown or held states do
   // not count.
-  std::vector<StateVector> newtonSteps(const std::vector<StateVector>& gradients) const;
+  std::vector<StateVector> newtonSteps(const std::map<int, Eigen::VectorXd>& gradients) const;
 
   // The diagonal block of the inverse that belongs to the state: its covariance. Zero for a held state, none
   // if J^T J is singular.

@@ -25,8 +25,9 @@ std::vector<int> Region::rim() const {
   return keepFree(neighbours(members_, false));
 }
 
-std::vector<int> Region::observers(int plane) const {
-  return keepFree(neighbours({plane}, true));
+bool Region::couldHold(int id) const {
+  const State& state = graph_.states[static_cast<size_t>(id)];
+  return !state.held && !state.shared && !inside_[static_cast<size_t>(id)];
 }
 
 std::vector<int> Region::neighbours(const std::vector<int>& of, bool across) const {
@@ -39,10 +40,7 @@ std::vector<int> Region::neighbours(const std::vector<int>& of, bool across) con
 }
 
 std::vector<int> Region::keepFree(std::vector<int> ids) const {
-  std::erase_if(ids, [&](int id) {
-    const State& state = graph_.states[static_cast<size_t>(id)];
-    return state.held || state.shared || inside_[static_cast<size_t>(id)];
-  });
+  std::erase_if(ids, [&](int id) { return !couldHold(id); });
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;

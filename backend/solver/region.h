@@ -22,8 +22,8 @@ class Region {
   // Free states next to the region's poses along the factors between poses, and free planes bound to the
   // region's planes; ascending.
   std::vector<int> rim() const;
-  // Free poses outside that see the plane, ascending.
-  std::vector<int> observers(int plane) const;
+  // Outside, and free to move.
+  bool couldHold(int state) const;
 
  private:
   bool isPlane(int state) const {

@@ -11,8 +11,29 @@ namespace {
 // Neighbourhoods begin with this many steps along factors, and grow by half as much again each time.
 constexpr int kFirstHops = 3;
 // Steps with the former factorisation in one round, and by how much each must be smaller than the last.
-constexpr int kMaxPasses = 4;
+constexpr int kMaxPasses = 5;
 constexpr double kContraction = 0.7;
+
+constexpr double kLeastRelaxation = 0.1;
+
+// What came since the factorisation makes one or two modes stiffer than it knows, and steps along them too
+// long: Aitken's relaxation takes their common factor from two successive steps.
+double aitken(const std::vector<Marginals::StateVector>& before,
+              const std::vector<Marginals::StateVector>& now) {
+  double along = 0, squared = 0;
+  for (size_t i = 0; i < before.size(); ++i) {
+    const Eigen::VectorXd change = now[i].second - before[i].second;
+    along += before[i].second.dot(change);
+    squared += change.squaredNorm();
+  }
+  return squared > 0 ? -along / squared : 1.0;
+}
+
+void addStates(const std::vector<Marginals::StateVector>& of, std::vector<int>& states) {
+  for (const auto& [state, vector] : of) states.push_back(state);
+  std::sort(states.begin(), states.end());
+  states.erase(std::unique(states.begin(), states.end()), states.end());
+}
 
 }  // namespace
 
@@ -22,7 +43,7 @@ RoundSolver::Report RoundSolver::solve(bool whole) {
   forgetMarginals();
   whole = whole || unfinished_ || static_cast<int>(graph.states.size()) <= options_.small_graph;
   if (!whole && !seeds_.empty())
-    whole = !(rested_planes_.empty() &&
+    whole = !(heeded_planes_.empty() &&
                       std::none_of(seeds_.begin(), seeds_.end(), [this](int state) { return isPlane(state); })
                   ? solveAlongPoses(report)
                   : solveWithPlanes(report));
@@ -100,9 +121,11 @@ bool RoundSolver::solveWithPlanes(Report& report) {
     seeds.push_back(static_cast<int>(i));
   Region region(graph);
   region.grow(seeds, kFirstHops);
-  if (static_cast<int>(region.members().size()) > options_.max_region_planes) return false;
-  bool everything_moved = false;
-  double last_step = 0;
+  if (static_cast<int>(region.members().size()) > options_.max_region_planes) {
+    return false;
+  }
+  std::vector<Marginals::StateVector> last_steps;
+  double relaxation = 1.0, last_size = 0;
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const RegionOutcome outcome =
         solveRegion(graph, region.members(), options_.max_iterations, options_.settled_step_local);
@@ -112,49 +135,49 @@ bool RoundSolver::solveWithPlanes(Report& report) {
     const StepSize step = largest(steps);
     if (step.m <= options_.rest_step_m && step.rad <= options_.rest_step_rad) {
       report.free = region.members();
-      if (everything_moved)
-        for (const auto& [state, unused] : steps) report.free.push_back(state);
-      std::sort(report.free.begin(), report.free.end());
-      report.free.erase(std::unique(report.free.begin(), report.free.end()), report.free.end());
-      return driftWithin(step);
+      if (pass > 0) addStates(steps, report.free);
+      drift_ = {std::hypot(drift_.m, step.m), std::hypot(drift_.rad, step.rad)};
+      return drift_.m <= options_.drift_planes_m && drift_.rad <= options_.drift_planes_rad;
     }
     const double size = std::max(step.m / options_.rest_step_m, step.rad / options_.rest_step_rad);
     if (step.m > options_.max_step_m || step.rad > options_.max_step_rad) return false;
-    if (pass > 0 && size > kContraction * last_step) return false;
-    last_step = size;
-    apply(steps);
-    everything_moved = true;
+    if (pass > 1 && size > kContraction * last_size) return false;
+    if (pass > 0) relaxation = std::clamp(relaxation * aitken(last_steps, steps), kLeastRelaxation, 1.0);
+    last_size = size;
+    apply(steps, relaxation);
+    last_steps = steps;
   }
   return false;
 }
 
-// Gradients of the states next to the region: those of its rim, of the poses that see a plane that moved,
-// and of shared states.
-std::vector<Marginals::StateVector> RoundSolver::pulls(const Region& region) {
-  std::vector<int> pulled = region.rim();
-  for (const int state : region.members()) {
-    if (!pullsAtObservers(state)) continue;
-    const std::vector<int> observers = region.observers(state);
-    pulled.insert(pulled.end(), observers.begin(), observers.end());
-    rested_planes_[state] = graph.states[static_cast<size_t>(state)].x;
-  }
+// Gradients of the states outside the region: of its rim and of shared states as they are; of the poses that
+// see its planes as these moved since they were heeded. Evaluating every factor of all who see a floor would
+// be the work of a whole-graph solve.
+const std::map<int, Eigen::VectorXd>& RoundSolver::pulls(const Region& region) {
+  for (const int state : region.members())
+    if (isPlane(state)) pullAtObservers(state, region);
+  for (const int state : region.members()) pulls_.erase(state);
+  std::vector<int> exact = region.rim();
   for (size_t i = 0; i < last_whole_->numStates(); ++i)
-    if (graph.states[i].shared && !graph.states[i].held) pulled.push_back(static_cast<int>(i));
-  std::sort(pulled.begin(), pulled.end());
-  pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
-  std::vector<Marginals::StateVector> gradients;
-  for (const int state : pulled) gradients.emplace_back(state, graph.normalEquations(state).g);
-  return gradients;
+    if (graph.states[i].shared && !graph.states[i].held) exact.push_back(static_cast<int>(i));
+  for (const int state : exact) pulls_[state] = graph.normalEquations(state).g;
+  return pulls_;
 }
 
-// A plane carries the poses that see it along by no more than it moved itself since they were heeded. A
-// floor seen from everywhere moves with each observation by next to nothing.
-bool RoundSolver::pullsAtObservers(int state) const {
-  if (!isPlane(state)) return false;
-  const auto rested = rested_planes_.find(state);
-  if (rested == rested_planes_.end()) return true;
-  const StepSize moved = graph.difference(state, rested->second);
-  return moved.m > options_.rest_plane_m || moved.rad > options_.rest_plane_rad;
+void RoundSolver::pullAtObservers(int plane, const Region& region) {
+  const State& state = graph.states[static_cast<size_t>(plane)];
+  const auto [heeded, fresh] = heeded_planes_.try_emplace(plane, state.x);
+  const Eigen::VectorXd moved = graph.difference(plane, heeded->second);
+  heeded->second = state.x;
+  if (fresh || moved.isZero(0.0)) return;
+  for (const int factor : state.factors) {
+    const std::vector<int>& states = graph.factors[static_cast<size_t>(factor)].states;
+    if (states.size() != 2 || isPlane(states[0]) || !region.couldHold(states[0])) continue;
+    const Linearised f = graph.linearise(factor);
+    const Eigen::VectorXd pull = f.jacobians[0].transpose() * (f.jacobians[1] * moved);
+    const auto [sum, first] = pulls_.try_emplace(states[0], pull);
+    if (!first) sum->second += pull;
+  }
 }
 
 StepSize RoundSolver::largest(const std::vector<Marginals::StateVector>& steps) const {
@@ -166,13 +189,15 @@ StepSize RoundSolver::largest(const std::vector<Marginals::StateVector>& steps) 
   return most;
 }
 
-void RoundSolver::apply(const std::vector<Marginals::StateVector>& steps) {
-  for (const auto& [state, step] : steps) {
+void RoundSolver::apply(const std::vector<Marginals::StateVector>& steps, double relaxation) {
+  for (const auto& [state, full_step] : steps) {
+    if (graph.states[static_cast<size_t>(state)].held) continue;
+    const Eigen::VectorXd step = relaxation * full_step;
     graph.move(state, step, graph.states[static_cast<size_t>(state)].x);
-    // What it moved before and was not heeded for is not forgotten.
-    if (const auto rested = rested_planes_.find(state); rested != rested_planes_.end())
-      graph.move(state, step, rested->second);
+    if (const auto heeded = heeded_planes_.find(state); heeded != heeded_planes_.end())
+      graph.move(state, step, heeded->second);
   }
+  for (auto& [state, pull] : pulls_) pull *= 1.0 - relaxation;
 }
 
 void RoundSolver::solveWhole(Report& report) {
@@ -188,15 +213,16 @@ void RoundSolver::solveWhole(Report& report) {
   unfinished_ = !outcome.converged;
   settled_ = outcome.converged;
   drift_ = {};
-  rested_planes_.clear();
+  pulls_.clear();
+  heeded_planes_.clear();
   for (const int state : report.free)
-    if (isPlane(state)) rested_planes_[state] = graph.states[static_cast<size_t>(state)].x;
+    if (isPlane(state)) heeded_planes_[state] = graph.states[static_cast<size_t>(state)].x;
   if (settled_) remember();
 }
 
 // What local rounds need of the whole graph.
 void RoundSolver::remember() {
-  if (!rested_planes_.empty()) {
+  if (!heeded_planes_.empty()) {
     marginals();
     last_whole_ = marginals_;
     return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <vector>
@@ -31,6 +32,11 @@ class RoundSolver {
   // Factorised once for all covariances asked for between two changes.
   const Marginals& marginals();
   void forgetMarginals() { marginals_.reset(); }
+  // To be called where a state was changed from outside: other coordinates than those of the factorisation.
+  void forgetWhole() {
+    forgetMarginals();
+    last_whole_.reset();
+  }
 
   StateGraph graph;
 
@@ -45,10 +51,10 @@ class RoundSolver {
   void remember();
   bool driftWithin(const StepSize& unresolved);
 
-  std::vector<Marginals::StateVector> pulls(const Region& region);
-  bool pullsAtObservers(int state) const;
+  const std::map<int, Eigen::VectorXd>& pulls(const Region& region);
+  void pullAtObservers(int plane, const Region& region);
   StepSize largest(const std::vector<Marginals::StateVector>& steps) const;
-  void apply(const std::vector<Marginals::StateVector>& steps);
+  void apply(const std::vector<Marginals::StateVector>& steps, double relaxation);
   bool isPlane(int state) const { return graph.states[static_cast<size_t>(state)].kind == StateKind::kPlane; }
 
   SolverOptions options_;
@@ -58,7 +64,8 @@ class RoundSolver {
   std::shared_ptr<const Marginals> marginals_;
   std::shared_ptr<const Marginals> last_whole_;  // as of the last whole-graph solve
   std::vector<std::pair<int, Eigen::MatrixXd>> shared_covariances_;
-  std::map<int, std::array<double, 7>> rested_planes_;  // as they were when their observers were last heeded
+  std::map<int, Eigen::VectorXd> pulls_;                // gradients not yet passed on, by state
+  std::map<int, std::array<double, 7>> heeded_planes_;  // as they were when those who see them were pulled
   StepSize drift_;                                      // left unresolved since the last whole-graph solve
 };
 

@@ -147,11 +147,11 @@ void StateGraph::move(int state, const Eigen::VectorXd& step, std::array<double,
   manifold(states[static_cast<size_t>(state)].kind).Plus(before.data(), step.data(), x.data());
 }
 
-StepSize StateGraph::difference(int state, const std::array<double, 7>& x) const {
+Eigen::VectorXd StateGraph::difference(int state, const std::array<double, 7>& x) const {
   const State& s = states[static_cast<size_t>(state)];
   Eigen::VectorXd step(manifold(s.kind).TangentSize());
   manifold(s.kind).Minus(s.x.data(), x.data(), step.data());
-  return sizeOf(state, step);
+  return step;
 }
 
 StepSize StateGraph::sizeOf(int state, const Eigen::VectorXd& step) const {

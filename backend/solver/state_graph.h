@@ -85,7 +85,7 @@ class StateGraph {
   // Moves x, a value of the state's kind, by a step of its tangent.
   void move(int state, const Eigen::VectorXd& step, std::array<double, 7>& x) const;
   // From x to the state.
-  StepSize difference(int state, const std::array<double, 7>& x) const;
+  Eigen::VectorXd difference(int state, const std::array<double, 7>& x) const;
 
  private:
   void checkStates(const Factor& factor) const;
