@@ -78,16 +78,7 @@ class Backend::Impl {
   const SituationalGraph& graph() const { return builder_.graph(); }
   std::map<std::string, FactorStatistics> factorStatistics() const { return builder_.statistics(); }
 
-  std::map<KeyframeId, Matrix6d> keyframeCovariances(size_t most) const {
-    std::map<KeyframeId, Matrix6d> covariances;
-    const size_t stride =
-        std::max<size_t>(1, (graph().keyframes.size() + most - 1) / std::max<size_t>(1, most));
-    size_t i = 0;
-    for (const auto& [id, node] : graph().keyframes)
-      if (i++ % stride == 0 && id != graph().keyframes.begin()->first)
-        if (const auto covariance = builder_.covariance(id)) covariances.emplace(id, *covariance);
-    return covariances;
-  }
+  std::map<KeyframeId, Matrix6d> keyframeCovariances() const { return builder_.keyframeCovariances(); }
 
  private:
   // True if the round needs the whole graph.
@@ -191,8 +182,8 @@ const SituationalGraph& Backend::graph() const {
   return impl_->graph();
 }
 
-std::map<KeyframeId, Matrix6d> Backend::keyframeCovariances(size_t most) const {
-  return impl_->keyframeCovariances(most);
+std::map<KeyframeId, Matrix6d> Backend::keyframeCovariances() const {
+  return impl_->keyframeCovariances();
 }
 
 std::map<std::string, FactorStatistics> Backend::factorStatistics() const {

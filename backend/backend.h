@@ -53,9 +53,9 @@ class Backend {
   // those of the whole graph are their sum less 6 per keyframe but the first and, where there is an up
   // factor, 2. chi2 is at the present states, without robust loss.
   std::map<std::string, FactorStatistics> factorStatistics() const;
-  // Marginal covariances of T_map_body (tangent of body) given the first keyframe: of all keyframes, or of
-  // every n-th so that there are at most `most`. Costs a factorisation of the whole graph.
-  std::map<KeyframeId, Matrix6d> keyframeCovariances(size_t most = 1000) const;
+  // Marginal covariances of T_map_body (tangent of body) given the first keyframe, whose own is zero. Costs a
+  // factorisation of the whole graph.
+  std::map<KeyframeId, Matrix6d> keyframeCovariances() const;
 
  private:
   class Impl;

@@ -218,11 +218,24 @@ std::optional<Matrix6d> GraphBuilder::covariance(KeyframeId id) const {
   return solver_.covariance(keyframe_states_.at(id));
 }
 
-std::optional<Eigen::Matrix3d> GraphBuilder::covariance(PlaneId id) const {
-  const std::optional<Eigen::Matrix3d> at_anchor = solver_.planeCovariance(plane_states_.at(id));
-  if (!at_anchor) return std::nullopt;
-  const PlaneNode& plane = graph_.planes.at(id);
-  return movedCovariance(*at_anchor, plane.normal_map, plane.anchor_map, plane.centroid_map);
+std::map<KeyframeId, Matrix6d> GraphBuilder::keyframeCovariances() const {
+  std::map<KeyframeId, Matrix6d> covariances;
+  for (const auto& [state, covariance] : solver_.poseCovariances())
+    if (const auto id = keyframe_of_state_.find(state); id != keyframe_of_state_.end())
+      covariances.emplace(id->second, covariance);
+  return covariances;
+}
+
+std::map<PlaneId, Eigen::Matrix3d> GraphBuilder::planeCovariances() const {
+  std::map<PlaneId, Eigen::Matrix3d> covariances;
+  for (const auto& [state, at_anchor] : solver_.planeCovariances()) {
+    const auto id = plane_of_state_.find(state);
+    if (id == plane_of_state_.end()) continue;
+    const PlaneNode& plane = graph_.planes.at(id->second);
+    covariances.emplace(plane.id,
+                        movedCovariance(at_anchor, plane.normal_map, plane.anchor_map, plane.centroid_map));
+  }
+  return covariances;
 }
 
 std::map<std::string, FactorStatistics> GraphBuilder::statistics() const {

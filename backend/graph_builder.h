@@ -52,7 +52,9 @@ class GraphBuilder {
 
   // Marginals at the present states, if the factors determine them.
   std::optional<Matrix6d> covariance(KeyframeId id) const;
-  std::optional<Eigen::Matrix3d> covariance(PlaneId id) const;  // at the centroid
+  // Of all, in the time of about one factorisation; planes at their centroids. Empty if undetermined.
+  std::map<KeyframeId, Matrix6d> keyframeCovariances() const;
+  std::map<PlaneId, Eigen::Matrix3d> planeCovariances() const;
 
   std::map<std::string, FactorStatistics> statistics() const;
 

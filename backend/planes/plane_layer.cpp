@@ -275,9 +275,8 @@ void PlaneLayer::remakeExtents() {
 }
 
 void PlaneLayer::refreshCovariances() {
-  for (const auto& [id, track] : tracks_)
-    if (const auto covariance = builder_.covariance(id))
-      builder_.setCovariance(id, kCovarianceMargin * *covariance);
+  for (const auto& [id, covariance] : builder_.planeCovariances())
+    builder_.setCovariance(id, kCovarianceMargin * covariance);
 }
 
 std::vector<PlaneId> PlaneLayer::takeChanged() {
