@@ -143,10 +143,10 @@ class Backend::Impl {
     if (graph().keyframes.empty()) return;
     planes_.settle(report.whole, idle);
     const KeyframeId newest = graph().keyframes.rbegin()->first;
-    if (report.whole && report.converged) {
+    // A factorisation costs as much as a solve, and only ever lowers them.
+    if (builder_.solver().settled() && (idle || report.whole)) {
       if (newest != graph().keyframes.begin()->first)
         if (const auto covariance = builder_.covariance(newest)) builder_.setCovariance(newest, *covariance);
-      // Costs as much as the solve, and only ever lowers them.
       if (idle) planes_.refreshCovariances();
     }
     output.keyframe_covariance = kCovarianceMargin * graph().keyframes.at(newest).covariance;

@@ -279,7 +279,7 @@ void BackendNode::finish(const std::string& why_not) {
   const Time end = scans_.empty() ? last_round_ : scans_.back().time;
   for (int i = 0; rounds_ > 0 && i < kMaxFinalRounds; ++i) {
     runRound({rounds_, end, {}}, {});
-    if (newest_round_.changed.empty()) break;
+    if (newest_round_.changed.empty() && newest_round_.changed_planes.empty()) break;
   }
   if (rounds_ > 0) publishSnapshot();
   run_result_t m{};

@@ -19,7 +19,11 @@ constexpr double kFloorArea_m2 = 4.0;
 }  // namespace
 
 bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate) {
-  if (a.floor != b.floor || a.normal_map.dot(b.normal_map) < std::cos(4 * gate.surface_rad)) return false;
+  // Small pieces are not sure of their tilt.
+  const auto tilt_variance = [](const PlaneNode& p) { return p.covariance.topLeftCorner<2, 2>().trace(); };
+  const double turned_rad = std::min(
+      gate.max_angle_rad, 4 * gate.surface_rad + 3 * std::sqrt(tilt_variance(a) + tilt_variance(b)));
+  if (a.floor != b.floor || a.normal_map.dot(b.normal_map) < std::cos(turned_rad)) return false;
   // Judged where both were seen: away from there a small difference in tilt would count as distance.
   const Polygon2d both = intersection(extentOf(a), extentOn(a, b));
   if (both.empty()) return false;

@@ -20,7 +20,7 @@ struct PlaneFit {
 
 // Iterated weighted least squares, robust against what stands before the plane (Tukey's biweight that ends at
 // `distance_m`). A centroid's variance along the normal is that of its raw ranges, as the ray meets the
-// surface, averaged over their number, and an error that all raw points of the voxel share.
+// surface, and of the surface's roughness, averaged over their number.
 //
 // Covariance: inverse of the normal equations, times the residuals' own variance (so a noisier sensor than
 // expected says so), times `scale`; plus what the points of each scan err together (clustered "sandwich"

@@ -34,7 +34,7 @@ void PlaneSegmentConfig::visit(ConfigVisitor& v) {
 
 void PlaneNoiseConfig::visit(ConfigVisitor& v) {
   v.field("range_sigma_m", range_sigma_m, 0.0005, 0.5, "Noise of a range, for the weights of points");
-  v.field("voxel_sigma_m", voxel_sigma_m, 0.0, 0.5, "Error that the raw points of one voxel share");
+  v.field("surface_sigma_m", surface_sigma_m, 0.0, 0.5, "Roughness of surfaces, for the same");
   v.field("scale", scale, 0.1, 1e4, "Factor on the covariance by the points' scatter: neighbours err alike");
   v.field("offset_floor_m", offset_floor_m, 0.0, 1.0,
           "Place of a keyframe in its own cloud, per horizontal direction of the body");

@@ -42,7 +42,7 @@ struct PlaneSegmentConfig {
 // Turns the scatter of points into a calibrated covariance.
 struct PlaneNoiseConfig {
   double range_sigma_m = 0.015;
-  double voxel_sigma_m = 0.005;
+  double surface_sigma_m = 0.005;
   double scale = 2.5;
   double offset_floor_m = 0.0015;
   double height_floor_m = 0.006;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "perception/planes/planes_node.h"
 #include "tests/tools/system/bus_recorder.h"
 #include "tests/tools/system/fake_cores.h"
 
@@ -32,9 +33,36 @@ std::vector<Sent> odometryStream(int scans, double step_s = 0.1, size_t points =
     });
   OdometryNode node(bus, partsOf(std::make_shared<FakeOdometry>(3, points)));
   Source source(bus);
-  source.session("lidar", false);
+  source.session("lidar", false, {"odometry", "backend"});
   for (int s = 0; s < scans; ++s) source.packet(step_s * s);
   source.end(why_not);
+  return sent;
+}
+
+// The same with sgraphs-planes taking part, which sees one plane, farther away by one metre per keyframe.
+std::vector<Sent> streamWithPlanes(int scans) {
+  MemoryBus bus;
+  std::vector<Sent> sent;
+  for (const char* channel :
+       {"SESSION", "ODOMETRY", "KEYFRAME", "ODOMETRY_END", "KEYFRAME_PLANES", "PLANES_END"})
+    bus.subscribe(channel, [&sent, channel](Bus::Bytes b) {
+      sent.push_back({channel, {b.begin(), b.end()}});
+    });
+  OdometryNode odometry(bus, partsOf(std::make_shared<FakeOdometry>(3, 20)));
+  PlanesNode planes(bus, [](const Keyframe& keyframe) {
+    KeyframePlanes seen;
+    seen.keyframe = keyframe.id;
+    seen.time = keyframe.time;
+    PlaneObservation& z = seen.planes.emplace_back();
+    z.centroid_body = {0, 0, -1.0 - static_cast<double>(keyframe.id.value)};
+    z.num_points = 1;
+    z.boundary = {{0, 0}, {1, 0}, {0, 1}};
+    return seen;
+  });
+  Source source(bus);
+  source.session("lidar", false, {"odometry", "planes", "backend"});
+  for (int s = 0; s < scans; ++s) source.packet(0.1 * s);
+  source.end();
   return sent;
 }
 
@@ -289,6 +317,68 @@ TEST_F(BackendNodeTest, ALongRunSendsASnapshotEveryFiftyRounds) {
   play(odometryStream(3 * 120));
   ASSERT_TRUE(node.done());
   EXPECT_EQ(snapshots.messages.size(), 3u);  // after 50, after 100, at the end
+}
+
+// Each round's own planes, however far behind the segmentation is.
+TEST_F(BackendNodeTest, ARoundWaitsForItsPlanes) {
+  std::vector<Sent> stream = streamWithPlanes(7);
+  std::stable_partition(stream.begin(), stream.end(),
+                        [](const Sent& s) { return s.channel.find("PLANES") == std::string::npos; });
+  const auto planes = std::find_if(stream.begin(), stream.end(),
+                                   [](const Sent& s) { return s.channel == "KEYFRAME_PLANES"; });
+  play({stream.begin(), planes});
+  EXPECT_TRUE(core->inputs.empty());
+  EXPECT_FALSE(node.done()) << "the odometry has ended, the planes have not";
+  play({planes, stream.end()});
+  ASSERT_TRUE(node.done());
+  EXPECT_EQ(node.result().why_not, "");
+  ASSERT_EQ(core->inputs.size(), 4u);
+  for (int64_t k = 0; k < 3; ++k) {
+    const auto& seen = core->inputs[static_cast<size_t>(k)].planes;
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->keyframe.value, k);
+    EXPECT_DOUBLE_EQ(seen->planes.at(0).d(), 1.0 + static_cast<double>(k));
+  }
+}
+
+TEST_F(BackendNodeTest, LostPlanesAreGoneOnWithoutAndNamed) {
+  std::vector<Sent> stream = streamWithPlanes(13);
+  drop(stream, "KEYFRAME_PLANES", 1);
+  play(stream);
+  ASSERT_TRUE(node.done());
+  EXPECT_EQ(node.result().reproducible, 0);
+  EXPECT_NE(node.result().why_not.find("KEYFRAME_PLANES"), std::string::npos) << node.result().why_not;
+  ASSERT_EQ(core->inputs.size(), 6u);
+  EXPECT_TRUE(core->inputs[0].planes);
+  EXPECT_FALSE(core->inputs[1].planes);
+  EXPECT_TRUE(core->inputs[2].planes);
+}
+
+TEST_F(BackendNodeTest, WithoutPlanesEndTheRunEndsAllTheSame) {
+  std::vector<Sent> stream = streamWithPlanes(7);
+  drop(stream, "PLANES_END", 0);
+  play(stream);
+  EXPECT_FALSE(node.done());
+  node.finish("the end of the stream did not arrive within 30 s");
+  ASSERT_TRUE(node.done());
+  EXPECT_EQ(node.result().reproducible, 0);
+  EXPECT_EQ(core->inputs.size(), 4u);
+}
+
+TEST_F(BackendNodeTest, PlanesThatCannotBeAreRefused) {
+  std::vector<Sent> stream = streamWithPlanes(7);
+  play({stream.front()});
+  keyframe_planes_t m{};
+  m.header.session = 7;
+  m.keyframe = 1'000'000;
+  publish(bus, channels::kKeyframePlanes, m);
+  m.header.seq = 1;
+  m.keyframe = 0;
+  m.num_planes = 1;
+  m.planes.resize(1);  // no normal, no boundary
+  publish(bus, channels::kKeyframePlanes, m);
+  bus.dispatch(0);
+  EXPECT_NE(node.gate().trouble().find("KEYFRAME_PLANES"), std::string::npos) << node.gate().trouble();
 }
 
 }  // namespace
