@@ -1,0 +1,88 @@
+// A simulated office through the whole chain and the evaluation: what the walls must be, whatever the start
+// heading.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace sgraphs {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+Json readJson(const fs::path& path) {
+  std::ifstream in(path);
+  return Json::parse(in);
+}
+
+class WallsTest : public ::testing::TestWithParam<int> {
+ protected:
+  WallsTest()
+      : folder_(fs::path(::testing::TempDir()) /
+                ("walls_test_" + std::to_string(GetParam()) + "_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~WallsTest() override { fs::remove_all(folder_); }
+
+  void run(const std::string& command) const {
+    const fs::path said = folder_ / "said.txt";
+    const int status =
+        std::system((SGRAPHS_BINARY_DIR "/sgraphs " + command + " > '" + said.string() + "' 2>&1").c_str());
+    std::ifstream in(said);
+    ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        << command << ":\n"
+        << std::string(std::istreambuf_iterator<char>(in), {});
+  }
+  std::string quoted(const char* name) const { return "'" + (folder_ / name).string() + "'"; }
+
+  fs::path folder_;
+};
+
+TEST_P(WallsTest, EveryFaceSeenIsOneWallAndCovariancesAreTrue) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "minutes of walking take too long under a sanitizer; shorter runs cover the same code";
+#endif
+  Json plan = readJson(SGRAPHS_SOURCE_DIR "/config/scenes/small_office/plan.json");
+  plan["path"]["start_heading_deg"] = GetParam();
+  std::ofstream(folder_ / "plan.json") << plan;
+  run("simulate " + quoted("plan.json") + " -o " + quoted("run.lcmlog") + " --truth " + quoted("truth") +
+      " --seed 3");
+  run("replay " + quoted("run.lcmlog") + " -o " + quoted("out"));
+  run("eval " + quoted("out") + " --truth " + quoted("truth"));
+  const Json eval = readJson(folder_ / "out" / "eval.json");
+
+  const Json& walls = eval["walls"];
+  EXPECT_GE(walls["asked"]["faces"].get<int>(), 8);
+  EXPECT_EQ(walls["asked"]["missed"], 0);
+  EXPECT_EQ(walls["asked"]["doubled"], 0);
+  EXPECT_TRUE(walls["false"].empty());
+  EXPECT_LT(walls["angle_rad"]["median"].get<double>(), 0.002);
+  EXPECT_LT(walls["offset_m"]["median"].get<double>(), 0.003);
+
+  // Right are 3 and 3; errors of one run are alike from keyframe to keyframe, so that its mean scatters.
+  const Json& nees = eval["nees_of_estimates"];
+  for (const char* part : {"pose_translation", "pose_rotation"}) {
+    EXPECT_GT(nees[part]["mean"].get<double>(), 0.8) << part;
+    EXPECT_LT(nees[part]["mean"].get<double>(), 6.0) << part;
+  }
+  // Conservative: all planes hang on the first keyframe, which stands still and is better than its
+  // covariance.
+  EXPECT_LT(nees["plane_tilt"]["mean"].get<double>(), 3.0);
+  EXPECT_LT(nees["plane_offset"]["mean"].get<double>(), 1.5);
+
+  EXPECT_LT(eval["trajectories"]["trajectory.tum"]["ate_m"]["rmse"].get<double>(), 0.012);
+  const Json summary = readJson(folder_ / "out" / "summary.json");
+  for (const char* kind : {"odometry", "observes", "plane_up"})
+    EXPECT_GT(summary["factors"][kind]["count"].get<int>(), 0) << kind;
+}
+
+INSTANTIATE_TEST_SUITE_P(StartHeading, WallsTest, testing::Values(0, 30, 45, 90),
+                         [](const auto& param_info) { return "Degrees" + std::to_string(param_info.param); });
+
+}  // namespace
+}  // namespace sgraphs
