@@ -102,7 +102,10 @@ class Backend::Impl {
     }
     const Keyframe& keyframe = *graph().keyframes.at(id).keyframe;
     if (admission.has_up) builder_.addUp(id, keyframe.up_body, keyframe.up_sigma_rad);
-    if (sighting) whole = planes_.add(id, *sighting) || whole;
+    if (sighting) {
+      output.refused.insert(output.refused.end(), sighting->refused.begin(), sighting->refused.end());
+      whole = planes_.add(id, *sighting) || whole;
+    }
     return whole;
   }
 

@@ -108,7 +108,8 @@ void BackendNode::onPlanes(const keyframe_planes_t& m) {
   int64_t lost_before = 0;
   if (done() || !gate_.accept(channel, m.header, &lost_before)) return;
   if (m.keyframe < next_keyframe_) return gate_.reject(channel, "its round is closed");
-  if (m.keyframe > newest_planes_ + kMaxPlanesAhead + lost_before)
+  const int64_t newest = std::max({newest_planes_, announced_by_keyframe_, announced_by_odometry_});
+  if (m.keyframe > newest + kMaxPlanesAhead + lost_before)
     return gate_.reject(channel, "a keyframe that cannot be");
   const std::optional<KeyframePlanes> planes = fromMessage(m);
   if (!planes) return gate_.reject(channel, "content that cannot be right");
@@ -214,8 +215,12 @@ bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) 
   const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
   for (const std::string& channel : joined.missing) ++missing_[channel];
   RoundInput input{.round = rounds_, .time = {}, .keyframe = joinedKeyframe(estimate)};
-  if (const auto planes = planes_.find(next_keyframe_); planes != planes_.end())
-    input.planes = std::move(planes->second);
+  // Those of an earlier round, late in live mode, say nothing of this keyframe: they are left out.
+  const auto joins = [&](const RoundJoiner::Output& o) {
+    return o.input == channels::kKeyframePlanes.name && o.key == next_keyframe_;
+  };
+  if (std::any_of(joined.outputs.begin(), joined.outputs.end(), joins))
+    input.planes = std::move(planes_.at(next_keyframe_));
   ++next_keyframe_;
   planes_.erase(planes_.begin(), planes_.lower_bound(next_keyframe_));
   if (!input.keyframe) return true;

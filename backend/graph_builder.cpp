@@ -129,7 +129,15 @@ void GraphBuilder::mergePlanes(PlaneId from, PlaneId into) {
     factors_.erase(id);
     return true;
   };
-  std::erase_if(graph_.plane_ups, [&](const PlaneUpFactor& f) { return f.plane == from && drop(f.id); });
+  const bool has_up = std::any_of(graph_.plane_ups.begin(), graph_.plane_ups.end(),
+                                  [&](const PlaneUpFactor& f) { return f.plane == into; });
+  if (has_up)
+    std::erase_if(graph_.plane_ups, [&](const PlaneUpFactor& f) { return f.plane == from && drop(f.id); });
+  for (PlaneUpFactor& f : graph_.plane_ups) {
+    if (f.plane != from) continue;
+    solver_.rebind(factors_.at(f.id).factor, old_state, state);
+    f.plane = into;
+  }
   const auto rebindPairs = [&](auto& pairs) {
     const auto before = std::exchange(pairs, {});
     for (auto f : before) {
@@ -232,8 +240,8 @@ std::map<PlaneId, Eigen::Matrix3d> GraphBuilder::planeCovariances() const {
     const auto id = plane_of_state_.find(state);
     if (id == plane_of_state_.end()) continue;
     const PlaneNode& plane = graph_.planes.at(id->second);
-    covariances.emplace(plane.id,
-                        movedCovariance(at_anchor, plane.normal_map, plane.anchor_map, plane.centroid_map));
+    covariances.emplace(plane.id, alongNormal(movedCovariance(at_anchor, plane.normal_map, plane.anchor_map,
+                                                              plane.centroid_map)));
   }
   return covariances;
 }

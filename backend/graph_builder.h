@@ -30,6 +30,8 @@ class GraphBuilder {
   void addRelativePose(const RelativePose& z);
   void addUp(KeyframeId keyframe, const Eigen::Vector3d& up_body, double sigma_rad);
   void addObservation(KeyframeId keyframe, PlaneId plane, const PlaneObservation& z);
+  // A plumb wall alone does not say where up is: it needs an up that is measured, or a level plane before it.
+  bool hasUp() const { return up_state_ >= 0; }
   void addPlaneUp(PlaneId plane, bool level, double sigma_rad);
   void addFaces(PlaneId a, PlaneId b, double sigma_rad);
   void addSameHeight(PlaneId a, PlaneId b, double sigma_m);

@@ -35,7 +35,8 @@ struct PlaneNode {
   Eigen::Vector3d normal_map = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d anchor_map = Eigen::Vector3d::Zero();
   double offset_m = 0;
-  // Conservative, of (tilt_u [rad], tilt_v [rad], offset [m]) at the centroid.
+  // Conservative, of (tilt_u [rad], tilt_v [rad], offset [m]) at the centroid: the true plane passes at
+  // centroid + offset n.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   // What has been seen of it: the centre on the plane, and a polygon counter-clockwise seen from the
   // observer.

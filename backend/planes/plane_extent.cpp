@@ -1,5 +1,6 @@
 #include "backend/planes/plane_extent.h"
 
+#include "backend/planes/plane_residual.h"
 #include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
@@ -34,9 +35,15 @@ void setExtent(PlaneNode& plane, Polygon2d points) {
   const Polygon2d hull = simplified(convexHull(std::move(points)), kMaxExtentCorners);
   const TangentBasis axes = tangentBasis(plane.normal_map);
   const Eigen::Vector3d origin = plane.anchor_map - plane.offset_m * plane.normal_map;
+  const bool had_extent = !plane.polygon_map.empty();
   plane.polygon_map.clear();
   for (const Eigen::Vector2d& p : hull) plane.polygon_map.emplace_back(origin + axes * p);
-  if (!hull.empty()) plane.centroid_map = origin + axes * polygonCentroid(hull);
+  if (hull.empty()) return;
+  const Eigen::Vector3d centroid = origin + axes * polygonCentroid(hull);
+  if (had_extent)
+    plane.covariance = alongNormal(
+        movedCovariance(alongNormal(plane.covariance), plane.normal_map, plane.centroid_map, centroid));
+  plane.centroid_map = centroid;
 }
 
 }  // namespace sgraphs

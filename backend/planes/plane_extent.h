@@ -15,7 +15,8 @@ Polygon2d extentOn(const PlaneNode& plane, const PlaneObservation& z, const SE3&
 // The extent of one mapped plane laid on another.
 Polygon2d extentOn(const PlaneNode& plane, const PlaneNode& other);
 
-// Makes polygon and centroid of the plane from the hull of these points.
+// Makes polygon and centroid of the plane from the hull of these points. The covariance, if there was an
+// extent before, is carried to the new centroid.
 void setExtent(PlaneNode& plane, Polygon2d points);
 
 }  // namespace sgraphs

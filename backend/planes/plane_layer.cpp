@@ -1,5 +1,6 @@
 #include "backend/planes/plane_layer.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,17 @@ constexpr double kAnnounceStep_rad = 1e-4;
 constexpr size_t kMaxUnmapped = 500;
 // Covariances are first-order, about states that still move a little.
 constexpr double kCovarianceMargin = 1.02;
+
+// Metres and radians that a solver can work with: the ranges of keyframe_admission, and no sight beyond 1 km.
+bool canBeWeighed(const PlaneObservation& z) {
+  constexpr double kFar_m = 1000, kMinVariance = 1e-14, kMaxVariance = 1e4, kMaxRatio = 1e12;
+  if (!(z.centroid_body.norm() < kFar_m) || !z.covariance.allFinite()) return false;
+  for (const Eigen::Vector2f& corner : z.boundary)
+    if (!(corner.norm() < kFar_m)) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(z.covariance, Eigen::EigenvaluesOnly);
+  const double least = eigen.eigenvalues()(0), most = eigen.eigenvalues()(2);
+  return least > kMinVariance && most < std::min(kMaxVariance, kMaxRatio * least);
+}
 
 PlaneNode planeFrom(const PlaneObservation& z, const SE3& T_map_body, FloorId floor) {
   PlaneNode plane;
@@ -79,6 +91,13 @@ PlaneLayer::Sighting PlaneLayer::associate(KeyframeId keyframe, const KeyframePl
   sighting.observations = planes.planes;
   sighting.candidate = associatePlanes(planes.planes, T_map_body, known, config_.gate);
   keepSharedError(planes.pose_sigma, sighting.observations);
+  for (size_t i = 0; i < sighting.observations.size(); ++i) {
+    if (canBeWeighed(sighting.observations[i])) continue;
+    sighting.refused.push_back("plane " + std::to_string(i) + " of keyframe " + keyframe.str() +
+                               ": its place, extent or covariance is out of range");
+    sighting.observations[i].area_m2 = 0;  // never mapped
+    sighting.candidate[i].reset();
+  }
   sighting.information.setZero();
   for (size_t i = 0; i < sighting.observations.size(); ++i) {
     const auto& candidate = sighting.candidate[i];
@@ -102,7 +121,7 @@ bool PlaneLayer::add(KeyframeId keyframe, const Sighting& sighting) {
     const PlaneObservation& z = sighting.observations[i];
     const auto& candidate = sighting.candidate[i];
     if (!candidate) {
-      if (z.area_m2 < config_.min_area_m2) continue;
+      if (!(z.area_m2 >= config_.min_area_m2) || z.area_m2 <= 0) continue;
       const PlaneNode plane = planeFrom(z, node.T_map_body, node.floor);
       fresh.push_back({keyframe,
                        z,
@@ -128,6 +147,7 @@ bool PlaneLayer::add(KeyframeId keyframe, const Sighting& sighting) {
     if (!just_mapped.contains(i)) rest.push_back(std::move(unmapped_[i]));
   rest.insert(rest.end(), fresh.begin(), fresh.end());
   unmapped_ = std::move(rest);
+  addUprights();
   forgetOld(keyframe);
   return circle;
 }
@@ -136,14 +156,14 @@ void PlaneLayer::map(const Unmapped& unmapped) {
   const SE3& T_map_body = builder_.graph().keyframes.at(unmapped.keyframe).T_map_body;
   PlaneNode plane = planeFrom(unmapped.z, T_map_body, unmapped.plane.floor);
   plane.label = axes_.label(plane.normal_map, builder_.graph().up_map);
-  plane.covariance =
+  plane.covariance = alongNormal(
       movedCovariance(observedPlaneCovariance(unmapped.z, T_map_body,
                                               builder_.graph().keyframes.at(unmapped.keyframe).covariance),
-                      plane.normal_map, plane.anchor_map, plane.centroid_map);
+                      plane.normal_map, plane.anchor_map, plane.centroid_map));
   const PlaneId id = builder_.addPlane(std::move(plane));
   tracks_[id] = unmapped.track;
   builder_.addObservation(unmapped.keyframe, id, unmapped.z);
-  addUpright(id);
+  upright_unknown_.insert(id);
 }
 
 // What was known of the plane, made older by the drift, and the new sight of it, fused.
@@ -167,11 +187,17 @@ void PlaneLayer::observe(KeyframeId keyframe, PlaneId id, const PlaneObservation
   seen_.push_back(id);
 }
 
-void PlaneLayer::addUpright(PlaneId id) {
+// Level planes first: they say where up is.
+void PlaneLayer::addUprights() {
   const SituationalGraph& graph = builder_.graph();
-  const double along_up = std::abs(graph.planes.at(id).normal_map.dot(graph.up_map));
-  if (along_up > std::cos(kUprightWithin_rad)) builder_.addPlaneUp(id, true, config_.level_sigma_rad);
-  if (along_up < std::sin(kUprightWithin_rad)) builder_.addPlaneUp(id, false, config_.plumb_sigma_rad);
+  const auto alongUp = [&](PlaneId id) { return std::abs(graph.planes.at(id).normal_map.dot(graph.up_map)); };
+  std::erase_if(upright_unknown_, [&](PlaneId id) { return !graph.planes.contains(id); });
+  for (const PlaneId id : upright_unknown_)
+    if (alongUp(id) > std::cos(kUprightWithin_rad)) builder_.addPlaneUp(id, true, config_.level_sigma_rad);
+  if (!builder_.hasUp()) return;
+  for (const PlaneId id : upright_unknown_)
+    if (alongUp(id) < std::sin(kUprightWithin_rad)) builder_.addPlaneUp(id, false, config_.plumb_sigma_rad);
+  upright_unknown_.clear();
 }
 
 void PlaneLayer::forgetOld(KeyframeId newest) {
@@ -180,6 +206,13 @@ void PlaneLayer::forgetOld(KeyframeId newest) {
   });
   if (unmapped_.size() > kMaxUnmapped)
     unmapped_.erase(unmapped_.begin(), unmapped_.end() - static_cast<std::ptrdiff_t>(kMaxUnmapped));
+}
+
+bool PlaneLayer::areTwins(PlaneId a, PlaneId b) const {
+  const auto& planes = builder_.graph().planes;
+  const double tilt_variance = tracks_.at(a).covariance.topLeftCorner<2, 2>().trace() +
+                               tracks_.at(b).covariance.topLeftCorner<2, 2>().trace();
+  return areOneSurface(planes.at(a), planes.at(b), config_.gate, std::sqrt(tilt_variance));
 }
 
 // Two planes of this round's sight that coincide where both were seen. In an idle round there is time to look
@@ -194,7 +227,7 @@ void PlaneLayer::countTwins(bool idle) {
   std::set<std::pair<PlaneId, PlaneId>> counted;
   for (const PlaneId a : looked_at)
     for (const auto& [b, plane] : planes) {
-      if (a == b || !areOneSurface(planes.at(a), plane, config_.gate)) continue;
+      if (a == b || !areTwins(a, b)) continue;
       if (counted.insert(std::minmax(a, b)).second) twins_[std::minmax(a, b)] += idle ? kTwinEvidence : 1;
     }
 }
@@ -212,15 +245,23 @@ void PlaneLayer::mergeTwins() {
       continue;
     }
     // An earlier merge of this round may have changed one of the two.
-    if (!areOneSurface(planes.at(into), planes.at(from), config_.gate)) {
+    if (!areTwins(into, from)) {
       it = twins_.erase(it);
       continue;
     }
-    builder_.mergePlanes(from, into);
+    // The one seen last is known relative to the newest keyframe.
+    std::optional<Track> newer;
     if (tracks_.at(from).last_seen > tracks_.at(into).last_seen) {
-      tracks_.at(into).last_seen = tracks_.at(from).last_seen;
-      tracks_.at(into).drift = tracks_.at(from).drift;
+      newer = tracks_.at(from);
+      const PlaneNode &gone = planes.at(from), &kept = planes.at(into);
+      newer->covariance = reframedCovariance(
+          movedCovariance(reframedCovariance(newer->covariance, newer->normal_map, gone.normal_map),
+                          gone.normal_map, gone.anchor_map, kept.anchor_map),
+          gone.normal_map, kept.normal_map);
+      newer->normal_map = kept.normal_map;
     }
+    builder_.mergePlanes(from, into);
+    if (newer) tracks_.at(into) = *newer;
     tracks_.erase(from);
     announced_.erase(from);
     merged_away_.insert(from);
@@ -229,21 +270,28 @@ void PlaneLayer::mergeTwins() {
   }
 }
 
+template <typename Factor>
+bool PlaneLayer::paired(const std::vector<Factor>& factors, PlaneId a, PlaneId b) {
+  return std::any_of(factors.begin(), factors.end(),
+                     [&](const Factor& f) { return (f.a == a && f.b == b) || (f.a == b && f.b == a); });
+}
+
 void PlaneLayer::pairFaces(PlaneId id) {
-  const auto& planes = builder_.graph().planes;
-  for (const auto& [other, plane] : planes)
-    if (areFacesOfOneWall(planes.at(id), plane, builder_.graph().up_map) &&
-        paired_.insert(std::minmax(id, other)).second)
+  const SituationalGraph& graph = builder_.graph();
+  for (const auto& [other, plane] : graph.planes)
+    if (areFacesOfOneWall(graph.planes.at(id), plane, graph.up_map) && !paired(graph.faces, id, other))
       builder_.addFaces(std::min(id, other), std::max(id, other), config_.parallel_sigma_rad);
 }
 
 // To the oldest of its height only: pairs do not pile up.
 void PlaneLayer::pairHeights(PlaneId id) {
-  const auto& planes = builder_.graph().planes;
-  for (const auto& [other, plane] : planes) {
+  const SituationalGraph& graph = builder_.graph();
+  if (!builder_.hasUp()) return;
+  for (const auto& [other, plane] : graph.planes) {
     if (other >= id) return;
-    if (!areOneHeight(planes.at(id), plane, builder_.graph().up_map)) continue;
-    if (paired_.insert({other, id}).second) builder_.addSameHeight(other, id, config_.same_height_sigma_m);
+    if (!areOneHeight(graph.planes.at(id), plane, graph.up_map)) continue;
+    if (!paired(graph.same_heights, id, other))
+      builder_.addSameHeight(other, id, config_.same_height_sigma_m);
     return;
   }
 }
@@ -255,7 +303,8 @@ void PlaneLayer::settle(bool whole, bool idle) {
     pairFaces(id);
     pairHeights(id);
   }
-  if (whole) remakeExtents();
+  // Its cost is that of all observations; while the robot walks, extents grow and follow their planes.
+  if (whole && idle) remakeExtents();
   axes_.update(builder_.graph().planes, builder_.graph().up_map);
   for (const auto& [id, track] : tracks_)
     builder_.setLabel(id, axes_.label(builder_.graph().planes.at(id).normal_map, builder_.graph().up_map));

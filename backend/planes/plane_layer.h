@@ -27,7 +27,8 @@ class PlaneLayer {
   struct Sighting {
     std::vector<PlaneObservation> observations;
     std::vector<std::optional<size_t>> candidate;  // by observation
-    Matrix6d information;  // of mapped planes about the keyframe's pose, tangent of body
+    Matrix6d information;              // of mapped planes about the keyframe's pose, tangent of body
+    std::vector<std::string> refused;  // one line for each plane that cannot be weighed
   };
   Sighting associate(KeyframeId keyframe, const KeyframePlanes& planes) const;
 
@@ -71,10 +72,13 @@ class PlaneLayer {
   std::vector<PlaneCandidate> candidates() const;
   void map(const Unmapped& unmapped);
   void observe(KeyframeId keyframe, PlaneId plane, const PlaneObservation& z, Track& track);
-  void addUpright(PlaneId plane);
+  void addUprights();
   void forgetOld(KeyframeId newest);
+  bool areTwins(PlaneId a, PlaneId b) const;
   void countTwins(bool idle);
   void mergeTwins();
+  template <typename Factor>
+  static bool paired(const std::vector<Factor>& factors, PlaneId a, PlaneId b);
   void pairFaces(PlaneId plane);
   void pairHeights(PlaneId plane);
   void remakeExtents();
@@ -86,7 +90,7 @@ class PlaneLayer {
   std::vector<Unmapped> unmapped_;
   std::map<std::pair<PlaneId, PlaneId>, int> twins_;  // keyframes that took the two for one
   std::vector<PlaneId> seen_;                         // in this round
-  std::set<std::pair<PlaneId, PlaneId>> paired_;
+  std::set<PlaneId> upright_unknown_;                 // mapped planes that await an `up` to be compared with
   std::map<PlaneId, Announced> announced_;
   std::set<PlaneId> merged_away_;
 };

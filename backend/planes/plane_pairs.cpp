@@ -14,19 +14,29 @@ constexpr double kUpright = 0.07;  // |n.up| of a wall, and sine of the angle be
 constexpr double kMinThickness_m = 0.03, kMaxThickness_m = 0.6;
 constexpr double kFacingShare = 0.3;  // of the smaller extent
 constexpr double kOneHeight_m = 0.05;
+constexpr double kTwinShare = 0.15;  // of the smaller extent: walls that meet at a bend share less
+constexpr double kMaxTurned_rad = 0.1;
 constexpr double kFloorArea_m2 = 4.0;
+
+// From the centroid to the furthest corner.
+double reachOf(const PlaneNode& plane) {
+  double reach = 0;
+  for (const Eigen::Vector3d& corner : plane.polygon_map)
+    reach = std::max(reach, (corner - plane.centroid_map).norm());
+  return reach;
+}
 
 }  // namespace
 
-bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate) {
-  // Small pieces are not sure of their tilt.
-  const auto tilt_variance = [](const PlaneNode& p) { return p.covariance.topLeftCorner<2, 2>().trace(); };
-  const double turned_rad = std::min(
-      gate.max_angle_rad, 4 * gate.surface_rad + 3 * std::sqrt(tilt_variance(a) + tilt_variance(b)));
+bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate,
+                   double tilt_sigma_rad) {
+  const double turned_rad = std::min(kMaxTurned_rad, 4 * gate.surface_rad + 3 * tilt_sigma_rad);
   if (a.floor != b.floor || a.normal_map.dot(b.normal_map) < std::cos(turned_rad)) return false;
+  if ((a.centroid_map - b.centroid_map).norm() > reachOf(a) + reachOf(b)) return false;
   // Judged where both were seen: away from there a small difference in tilt would count as distance.
-  const Polygon2d both = intersection(extentOf(a), extentOn(a, b));
+  const Polygon2d own = extentOf(a), other = extentOn(a, b), both = intersection(own, other);
   if (both.empty()) return false;
+  if (polygonArea(both) < kTwinShare * std::min(polygonArea(own), polygonArea(other))) return false;
   const Eigen::Vector3d p_map =
       a.anchor_map - a.offset_m * a.normal_map + tangentBasis(a.normal_map) * polygonCentroid(both);
   return std::abs(b.distance(p_map)) < 2.5 * gate.surface_m;

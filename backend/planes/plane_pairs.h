@@ -7,8 +7,11 @@ namespace sgraphs {
 
 // What two mapped planes are to each other.
 
-// The same surface, found twice: same side, coplanar within the gate's surface tolerance, extents that meet.
-bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate);
+// The same surface, found twice: same side, coplanar within the gate's surface tolerance where both were
+// seen, extents that share a good part of the smaller one. tilt_sigma_rad: what their tilts are not sure of
+// relative to each other; small pieces are not.
+bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate,
+                   double tilt_sigma_rad = 0);
 
 // The two sides of one wall: upright, antiparallel, each seen from its own side, 3 to 60 cm apart with
 // nothing seen between them, extents facing each other.

@@ -45,6 +45,11 @@ Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::
   return J * covariance * J.transpose();
 }
 
+Eigen::Matrix3d alongNormal(const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d sign(1, 1, -1);
+  return sign.asDiagonal() * covariance * sign.asDiagonal();
+}
+
 // The smallest turn that takes one normal to the other, so that the axes are compared in one plane.
 Eigen::Matrix3d reframedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal_then,
                                    const Eigen::Vector3d& normal_now) {

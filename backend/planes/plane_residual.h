@@ -16,17 +16,21 @@ PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, co
 // How an observation's (tilt_u, tilt_v, offset) changes with the pose it is seen from, tangent of body.
 Eigen::Matrix<double, 3, 6> observationByPose(const PlaneObservation& z);
 
-// Covariance of a plane's tangent, carried from one point on the plane to another: the lever turns tilt into
-// offset. u, v are tangentBasis(normal).
+// Covariance of a plane state's tangent, carried from one point on the plane to another: the lever turns tilt
+// into offset. u, v are tangentBasis(normal).
 Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal,
                                 const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+// A plane state's offset moves it against its normal, n.(p - a) + offset = 0; what nodes, messages and files
+// say of an offset is along it (plane_t). The step from either to the other.
+Eigen::Matrix3d alongNormal(const Eigen::Matrix3d& covariance);
 
 // Covariance of a plane's tangent for a normal that has turned a little or with the whole map: the axes are a
 // function of the normal, and flip where its z changes sign.
 Eigen::Matrix3d reframedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal_then,
                                    const Eigen::Vector3d& normal_now);
 
-// Covariance (at the centroid of the observation, in the axes of the plane) of a plane in map that was seen
+// Covariance (of a state's tangent anchored at the observation's centroid) of a plane in map that was seen
 // once, from a pose with this covariance.
 Eigen::Matrix3d observedPlaneCovariance(const PlaneObservation& z, const SE3& T_map_body,
                                         const Matrix6d& pose);

@@ -1,7 +1,11 @@
 #include "backend/solver/marginal_covariance.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <functional>
+
+#include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
 namespace {
@@ -91,11 +95,15 @@ class SparseInverse {
 
 }  // namespace
 
-Marginals::Marginals(const StateGraph& graph) : graph_(graph), columns_(graph.states.size(), -1) {
+Marginals::Marginals(const StateGraph& graph)
+    : graph_(graph),
+      columns_(graph.states.size(), -1),
+      normals_(graph.states.size(), Eigen::Vector3d::Zero()) {
   for (size_t i = 0; i < graph.states.size(); ++i) {
     const State& state = graph.states[i];
     if (state.held || state.factors.empty()) continue;
     columns_[i] = size_;
+    if (state.kind == StateKind::kPlane) normals_[i] = Eigen::Vector3d(state.x.data());
     size_ += graph.manifold(state.kind).TangentSize();
   }
   if (size_ > 0) cholesky_.compute(information(graph, columns_, size_));
@@ -105,6 +113,26 @@ int Marginals::tangentSize(int state) const {
   return graph_.manifold(graph_.states.at(static_cast<size_t>(state)).kind).TangentSize();
 }
 
+// The axes of a plane are a function of its normal, and flip where its z changes sign: a wall's do so often.
+std::optional<Eigen::Matrix2d> Marginals::turnSince(int state) const {
+  const State& s = graph_.states[static_cast<size_t>(state)];
+  if (s.kind != StateKind::kPlane) return std::nullopt;
+  const Eigen::Vector3d& then = normals_[static_cast<size_t>(state)];
+  const Eigen::Vector3d now(s.x.data());
+  const Eigen::Matrix3d R = Eigen::Quaterniond::FromTwoVectors(now, then).toRotationMatrix();
+  return tangentBasis(then).transpose() * R * tangentBasis(now);
+}
+
+Eigen::VectorXd Marginals::toThen(int state, Eigen::VectorXd v) const {
+  if (const auto turn = turnSince(state)) v.head<2>() = (*turn * v.head<2>()).eval();
+  return v;
+}
+
+Eigen::VectorXd Marginals::toNow(int state, Eigen::VectorXd v) const {
+  if (const auto turn = turnSince(state)) v.head<2>() = (turn->transpose() * v.head<2>()).eval();
+  return v;
+}
+
 std::vector<Marginals::StateVector> Marginals::newtonSteps(
     const std::map<int, Eigen::VectorXd>& gradients) const {
   std::vector<StateVector> steps;
@@ -112,12 +140,13 @@ std::vector<Marginals::StateVector> Marginals::newtonSteps(
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(size_);
   for (const auto& [state, gradient] : gradients) {
     if (static_cast<size_t>(state) >= columns_.size() || columns_[static_cast<size_t>(state)] < 0) continue;
-    rhs.segment(columns_[static_cast<size_t>(state)], gradient.size()) = -gradient;
+    rhs.segment(columns_[static_cast<size_t>(state)], gradient.size()) = -toThen(state, gradient);
   }
   const Eigen::VectorXd solution = cholesky_.solve(rhs);
   for (size_t i = 0; i < columns_.size(); ++i) {
     const auto state = static_cast<int>(i);
-    if (columns_[i] >= 0) steps.emplace_back(state, solution.segment(columns_[i], tangentSize(state)));
+    if (columns_[i] >= 0)
+      steps.emplace_back(state, toNow(state, solution.segment(columns_[i], tangentSize(state))));
   }
   return steps;
 }

@@ -36,9 +36,14 @@ class Marginals {
 
  private:
   int tangentSize(int state) const;
+  // Takes a tangent vector of the state from its present axes to those of the factorisation.
+  Eigen::VectorXd toThen(int state, Eigen::VectorXd v) const;
+  Eigen::VectorXd toNow(int state, Eigen::VectorXd v) const;
+  std::optional<Eigen::Matrix2d> turnSince(int state) const;
 
   const StateGraph& graph_;
-  std::vector<int> columns_;  // first column of each state; -1: held, or without a factor
+  std::vector<int> columns_;              // first column of each state; -1: held, or without a factor
+  std::vector<Eigen::Vector3d> normals_;  // of planes at the factorisation, by state
   int size_ = 0;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
 };

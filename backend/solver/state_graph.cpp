@@ -150,8 +150,10 @@ void StateGraph::move(int state, const Eigen::VectorXd& step, std::array<double,
 Eigen::VectorXd StateGraph::difference(int state, const std::array<double, 7>& x) const {
   const State& s = states[static_cast<size_t>(state)];
   Eigen::VectorXd step(manifold(s.kind).TangentSize());
-  manifold(s.kind).Minus(s.x.data(), x.data(), step.data());
-  return step;
+  // In the axes at the present value, as Jacobians are: those of a wall flip where its normal's z changes
+  // sign.
+  manifold(s.kind).Minus(x.data(), s.x.data(), step.data());
+  return -step;
 }
 
 StepSize StateGraph::sizeOf(int state, const Eigen::VectorXd& step) const {

@@ -74,7 +74,7 @@ keyframe_planes_t toMessage(const KeyframePlanes& planes);
 std::optional<KeyframePlanes> fromMessage(const keyframe_planes_t& message);
 
 // Most corners of a mapped plane's extent. A merged plane's message carries its two ids and zeros.
-inline constexpr int kMaxExtentCorners = 1024;
+inline constexpr int kMaxMapPlaneCorners = 1024;
 // Throws std::logic_error for more corners than that.
 graph_plane_t toMessage(const MapPlane& plane);
 std::optional<MapPlane> fromMessage(const graph_plane_t& message);

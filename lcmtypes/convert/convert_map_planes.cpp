@@ -27,7 +27,7 @@ bool isPlane(const MapPlane& plane) {
 }  // namespace
 
 graph_plane_t toMessage(const MapPlane& plane) {
-  if (plane.polygon_map.size() > kMaxExtentCorners)
+  if (plane.polygon_map.size() > kMaxMapPlaneCorners)
     throw std::logic_error("mapped plane with more corners than a message holds");
   graph_plane_t m{};
   m.id = plane.id.value;
@@ -55,7 +55,7 @@ std::optional<MapPlane> fromMessage(const graph_plane_t& m) {
   plane.id = PlaneId{m.id};
   plane.merged_into = PlaneId{m.merged_into};
   if (plane.merged_into.valid()) return plane;
-  if (m.floor < -1 || !isLabel(m.label) || m.num_corners < 3 || m.num_corners > kMaxExtentCorners)
+  if (m.floor < -1 || !isLabel(m.label) || m.num_corners < 3 || m.num_corners > kMaxMapPlaneCorners)
     return std::nullopt;
   plane.floor = FloorId{m.floor};
   plane.label = static_cast<PlaneLabel>(m.label);

@@ -120,10 +120,10 @@ TEST(GraphMessagesTest, ASnapshotHoldsEveryNodeOnceInDatagrams) {
 }
 
 TEST(GraphMessagesTest, TheLargestPlaneStillFitsADatagram) {
-  const SituationalGraph graph = largeGraph(3, kMaxExtentCorners);
+  const SituationalGraph graph = largeGraph(3, kMaxMapPlaneCorners);
   for (const graph_update_t& m : snapshotMessages(graph, outputOf({}), 0, kTime))
     EXPECT_LE(m.getEncodedSize(), kMaxGraphMessageBytes);
-  EXPECT_THROW(snapshotMessages(largeGraph(1, kMaxExtentCorners + 1), outputOf({}), 0, kTime),
+  EXPECT_THROW(snapshotMessages(largeGraph(1, kMaxMapPlaneCorners + 1), outputOf({}), 0, kTime),
                std::logic_error);
 }
 

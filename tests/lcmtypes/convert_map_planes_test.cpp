@@ -80,7 +80,7 @@ TEST(ConvertMapPlaneTest, WhatIsNoPlaneIsRefused) {
 
 TEST(ConvertMapPlaneTest, TooManyCornersAreAnError) {
   MapPlane plane = somePlane();
-  plane.polygon_map.assign(kMaxExtentCorners, {4, -3, 0});
+  plane.polygon_map.assign(kMaxMapPlaneCorners, {4, -3, 0});
   EXPECT_TRUE(fromMessage(test::throughBytes(toMessage(plane))));
   plane.polygon_map.emplace_back(4, -3, 0);
   EXPECT_THROW(toMessage(plane), std::logic_error);
