@@ -20,7 +20,7 @@ struct KeyframeNode {
   SE3 T_odom_body;
   FloorId floor;
   std::shared_ptr<const Keyframe> keyframe;  // cloud, viewpoints and measurements as they arrived
-  Matrix6d covariance = Matrix6d::Zero();  // of T_map_body: an upper bound, from when it was the newest
+  Matrix6d covariance = Matrix6d::Zero();    // of T_map_body: an upper bound, from when it was the newest
 };
 
 const char* toString(PlaneLabel label);  // "x", "y", "horizontal", as graph.json has it

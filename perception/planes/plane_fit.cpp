@@ -15,8 +15,8 @@ constexpr int kIterations = 4;
 // A fit needs some more points than unknowns.
 constexpr double kMinFreedom = 10;
 
-// In proportion to the raw points. Where a wall lies along the voxel grid, its points are shared out between two
-// layers of voxels; any weight that favours the thinner layer moves the wall by millimetres.
+// In proportion to the raw points. Where a wall lies along the voxel grid, its points are shared out between
+// two layers of voxels; any weight that favours the thinner layer moves the wall by millimetres.
 double weightOf(const ViewedPoint& point, const Eigen::Vector3d& normal, const PlaneNoiseConfig& noise) {
   const double along_normal = noise.range_sigma_m * normal.dot(point.to_viewpoint);
   return point.count / (along_normal * along_normal + noise.surface_sigma_m * noise.surface_sigma_m + 1e-8);

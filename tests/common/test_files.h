@@ -15,7 +15,7 @@ namespace sgraphs::test {
 inline std::filesystem::path freshFolder() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   auto folder = std::filesystem::path(testing::TempDir()) /
-                      (std::string("sgraphs_") + info->test_suite_name() + "_" + info->name());
+                (std::string("sgraphs_") + info->test_suite_name() + "_" + info->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -47,7 +47,8 @@ void report(const RunRecord& record, const std::string& out_dir) {
   std::printf("graph_digest %s\n", record.graph_digest.c_str());
 }
 
-// What takes part for the layers asked for. Not left to SESSION: old logs know fewer stages than there are now.
+// What takes part for the layers asked for. Not left to SESSION: old logs know fewer stages than there are
+// now.
 std::vector<std::string> stagesOf(const Arguments& arguments) {
   if (arguments.layers == "keyframes") return {"odometry", "backend"};
   return {"odometry", "planes", "backend"};
@@ -55,10 +56,11 @@ std::vector<std::string> stagesOf(const Arguments& arguments) {
 
 void run(const Arguments& arguments, bool layers_given) {
   if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
-  ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry,
-                        stagesOf(arguments), progressLine()};
+  ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry, stagesOf(arguments),
+                        progressLine()};
   if (layers_given && (arguments.layers == "rooms" || arguments.layers == "floors"))
-    std::fprintf(stderr, "sgraphs: warning: --layers %s: this version fills the layers keyframes and walls only\n",
+    std::fprintf(stderr,
+                 "sgraphs: warning: --layers %s: this version fills the layers keyframes and walls only\n",
                  arguments.layers.c_str());
   Replay replay(std::move(options));
   replay.run();

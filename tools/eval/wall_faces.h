@@ -23,7 +23,7 @@ struct TrueFace {
   std::vector<FaceSample> samples;  // row by row from below, `columns` in each
   size_t columns = 0;
   double sample_area_m2 = 0;  // what one sample stands for
-  double seen_s = 0;  // how long kSeenArea_m2 of it and more were in view at once
+  double seen_s = 0;          // how long kSeenArea_m2 of it and more were in view at once
 
   // Of the samples, about.
   static constexpr double kSpacing_m = 0.2;

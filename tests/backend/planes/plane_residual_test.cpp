@@ -110,7 +110,8 @@ TEST(SharedInformationTest, SharedErrorIsNotAveragedDownByMorePlanes) {
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(0.002), Eigen::Vector3d::Constant(0.0015);
   std::vector<PlaneObservation> planes;
-  for (const Eigen::Vector3d& n : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)})
+  for (const Eigen::Vector3d& n :
+       {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)})
     for (const double side : {-1.0, 1.0}) {
       Face face{-2 * side * n, side * n};
       PlaneObservation z = observe(face, SE3());
@@ -128,7 +129,8 @@ TEST(SharedInformationTest, SharedErrorIsNotAveragedDownByMorePlanes) {
   };
   EXPECT_LT(poseCovariance()(3, 3), 0.4 * sigma(3) * sigma(3)) << "as if independent";
   keepSharedError(sigma, planes);
-  for (int i = 0; i < 6; ++i) EXPECT_NEAR(poseCovariance()(i, i), sigma(i) * sigma(i), 0.2 * sigma(i) * sigma(i));
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(poseCovariance()(i, i), sigma(i) * sigma(i), 0.2 * sigma(i) * sigma(i));
 }
 
 TEST(SharedInformationTest, OnePlaneKeepsItsCovariance) {
