@@ -8,7 +8,7 @@
 
 namespace sgraphs {
 
-OdometryParts makeOdometryParts(const SystemConfig& config, std::shared_ptr<Vlp16Counts> counts) {
+OdometryParts makeOdometryParts(const SystemConfig& config, const std::shared_ptr<Vlp16Counts>& counts) {
   OdometryParts parts;
   parts.make_decoder = [counts] {
     auto decoder = std::make_shared<RevolutionAssembler>();

@@ -12,7 +12,8 @@
 namespace sgraphs {
 
 // The real cores for the nodes. `counts` (optional) receives what the VLP-16 decoder counted.
-OdometryParts makeOdometryParts(const SystemConfig& config, std::shared_ptr<Vlp16Counts> counts = nullptr);
+OdometryParts makeOdometryParts(const SystemConfig& config,
+                                const std::shared_ptr<Vlp16Counts>& counts = nullptr);
 PlanesNode::Step makePlanesStep(const SystemConfig& config);
 BackendCore makeBackendCore(const SystemConfig& config);
 

@@ -10,7 +10,7 @@ namespace {
 const FloorNode kFloor{{0}, {0, 0}, true, -0.5};
 
 // Share of the cells along a segment that hold `value`.
-double share(const OccupancyGrid& grid, Eigen::Vector2d a, Eigen::Vector2d b, Occupancy value) {
+double share(const OccupancyGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, Occupancy value) {
   int hits = 0;
   for (int i = 0; i <= 100; ++i) hits += grid.at(a + (b - a) * i / 100.0) == value;
   return hits / 101.0;

@@ -174,5 +174,27 @@ TEST(BackendPlanesTest, PiecesThatGrowTogetherAreMerged) {
             static_cast<int64_t>(run.graph().observations.size()));
 }
 
+// Messages may say anything finite: what no solver can weigh is left out and named, and the rest goes on.
+TEST(BackendPlanesTest, PlanesThatCannotBeWeighedAreNamedAndLeftOut) {
+  RingWalk walk = makeRingWalk({.laps = 0.2});
+  walk.planes[3].planes[0].covariance = 1e-300 * Eigen::Matrix3d::Identity();
+  walk.planes[4].planes[0].centroid_body.x() = 1e12;
+  walk.planes[5].pose_sigma.setConstant(1e100);
+  Backend backend{BackendConfig{}};
+  std::vector<std::string> refused;
+  for (size_t k = 0; k < walk.keyframes.size(); ++k) {
+    const RoundOutput output = backend.step({.round = static_cast<int64_t>(k),
+                                             .time = walk.keyframes[k].time,
+                                             .keyframe = walk.keyframes[k],
+                                             .planes = walk.planes[k]});
+    refused.insert(refused.end(), output.refused.begin(), output.refused.end());
+  }
+  backend.graph().check();
+  EXPECT_GE(refused.size(), 2 + walk.planes[5].planes.size());
+  EXPECT_NE(refused.front().find("plane 0 of keyframe k3"), std::string::npos) << refused.front();
+  const SE3 last = backend.graph().keyframes.rbegin()->second.T_map_body;
+  EXPECT_LT((last.translation - (walk.T_map_world() * walk.truth.back()).translation).norm(), 0.2);
+}
+
 }  // namespace
 }  // namespace sgraphs
