@@ -196,5 +196,75 @@ TEST(BackendPlanesTest, PlanesThatCannotBeWeighedAreNamedAndLeftOut) {
   EXPECT_LT((last.translation - (walk.T_map_world() * walk.truth.back()).translation).norm(), 0.2);
 }
 
+// Keyframes at these places, level, looking along x; every face whose visible side they are on is seen whole.
+RingWalk walkAmong(const std::vector<Face>& faces, const std::vector<Eigen::Vector3d>& places,
+                   uint32_t seed) {
+  RingWalk walk;
+  walk.faces = faces;
+  std::mt19937 random(seed);
+  for (size_t k = 0; k < places.size(); ++k) {
+    walk.truth.emplace_back(Eigen::Quaterniond::Identity(), places[k]);
+    Keyframe keyframe;
+    keyframe.id = KeyframeId{static_cast<int64_t>(k)};
+    keyframe.time = Time{1'000'000 * (static_cast<int64_t>(k) + 1)};
+    if (k > 0) {
+      RelativePose z;
+      z.from = KeyframeId{keyframe.id.value - 1};
+      z.to = keyframe.id;
+      z.T_from_to = walk.truth[k - 1].inverse() * walk.truth[k];
+      z.covariance = 1e-4 * Matrix6d::Identity();
+      keyframe.relative_poses.push_back(z);
+    }
+    KeyframePlanes planes{.keyframe = keyframe.id, .time = keyframe.time, .planes = {}};
+    for (const Face& face : faces)
+      if (face.normal.dot(places[k] - face.centre) > 0)
+        planes.planes.push_back(noisy(observe(face, walk.truth[k]), random));
+    walk.keyframes.push_back(std::move(keyframe));
+    walk.planes.push_back(std::move(planes));
+  }
+  return walk;
+}
+
+std::vector<Eigen::Vector3d> line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, int n) {
+  std::vector<Eigen::Vector3d> places;
+  for (int i = 0; i < n; ++i) places.emplace_back(from + (to - from) * i / (n - 1));
+  return places;
+}
+
+// Nothing makes a room square that is not.
+TEST(BackendPlanesTest, ATrapezoidStaysATrapezoid) {
+  const double slant = 12 * M_PI / 180;
+  const std::vector<Face> faces{{{4, 0, 0.5}, {-1, 0, 0}},
+                                {{-4, 0, 0.5}, {1, 0, 0}},
+                                {{0, 3, 0.5}, {std::sin(slant), -std::cos(slant), 0}, 4},
+                                {{0, -3, 0.5}, {0, 1, 0}, 4},
+                                {{0, 0, -0.6}, {0, 0, 1}, 3, 3}};
+  const WholeRun run(walkAmong(faces, line({-2, 0, 0}, {2, 0.5, 0}, 12), 5));
+  ASSERT_EQ(run.graph().planes.size(), faces.size());
+  for (const Face& face : faces) {
+    double best = 1;
+    for (const auto& [id, plane] : run.graph().planes)
+      best = std::min(best, (plane.normal_map - face.normal).norm());
+    EXPECT_LT(best, 0.006);
+  }
+}
+
+// A wall 5 cm thick, walked around: two faces at their distance, tied by one factor.
+TEST(BackendPlanesTest, AThinWallIsTwoFacesAtItsThickness) {
+  const std::vector<Face> faces{{{0.025, 0, 0.5}, {1, 0, 0}, 2},
+                                {{-0.025, 0, 0.5}, {-1, 0, 0}, 2},
+                                {{0, 6, 0.5}, {0, -1, 0}, 5},
+                                {{0, 0, -0.6}, {0, 0, 1}, 5, 5}};
+  std::vector<Eigen::Vector3d> places = line({2, -2, 0}, {2, 3, 0}, 8);
+  for (const Eigen::Vector3d& p : line({1.5, 3.5, 0}, {-1.5, 3.5, 0}, 5)) places.push_back(p);
+  for (const Eigen::Vector3d& p : line({-2, 3, 0}, {-2, -2, 0}, 8)) places.push_back(p);
+  const WholeRun run(walkAmong(faces, places, 6));
+  ASSERT_EQ(run.graph().planes.size(), faces.size());
+  ASSERT_EQ(run.graph().faces.size(), 1u);
+  const PlaneNode& a = run.graph().planes.at(run.graph().faces[0].a);
+  const PlaneNode& b = run.graph().planes.at(run.graph().faces[0].b);
+  EXPECT_NEAR(-a.distance(b.centroid_map), 0.05, 0.01);
+}
+
 }  // namespace
 }  // namespace sgraphs
