@@ -49,7 +49,7 @@ void IncrementalSolver::hold(StateId state) {
 }
 
 IncrementalSolver::FactorId IncrementalSolver::addFactor(std::unique_ptr<ceres::CostFunction> cost,
-                                                         std::vector<StateId> states,
+                                                         const std::vector<StateId>& states,
                                                          std::optional<double> cauchy_scale) {
   Factor factor;
   factor.cost = std::move(cost);

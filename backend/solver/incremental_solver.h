@@ -74,7 +74,7 @@ class IncrementalSolver {
   void hold(StateId state);
 
   // The cost's parameters in order. `cauchy_scale`: robust, quadratic up to about this residual norm.
-  FactorId addFactor(std::unique_ptr<ceres::CostFunction> cost, std::vector<StateId> states,
+  FactorId addFactor(std::unique_ptr<ceres::CostFunction> cost, const std::vector<StateId>& states,
                      std::optional<double> cauchy_scale = {});
   // A disabled factor has no part in solves, neighbourhoods and covariances; it keeps its id, and chi2()
   // still tells what its residual would be.
