@@ -12,8 +12,6 @@
 namespace sgraphs {
 namespace {
 
-// Messages that may wait for SESSION.
-constexpr size_t kMaxEarly = 2000;
 // Planes may come before the keyframe's own message does, by no more than what fits the queues.
 constexpr int64_t kMaxPlanesAhead = 100;
 
@@ -30,7 +28,9 @@ constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry
 
 BackendNode::BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode)
     : bus_(bus), publisher_(bus), core_(std::move(core)), mode_(mode), joiner_(mode) {
-  listen(channels::kSession, &BackendNode::onSession);
+  subscribe(
+      bus_, channels::kSession, [this](const session_t& m) { onSession(m); },
+      [this] { gate_.reject(channels::kSession.name, "undecodable"); });
   listen(channels::kOdometry, &BackendNode::onOdometry);
   listen(channels::kKeyframe, &BackendNode::onKeyframe);
   listen(channels::kKeyframePlanes, &BackendNode::onPlanes);
@@ -40,20 +40,9 @@ BackendNode::BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode)
   if (mode_ == RoundJoiner::Mode::kWait) listen(channels::kRoundSchedule, &BackendNode::onSchedule);
 }
 
-// What comes before SESSION is held back: SESSION alone says which session this run belongs to, and it comes
-// from another process than ODOMETRY.
 template <typename Message>
 void BackendNode::listen(const Channel<Message>& channel, void (BackendNode::*handler)(const Message&)) {
-  const std::string name = channel.name;
-  const auto on_message = [this, name, handler](const Message& m) {
-    if (session_ || name == channels::kSession.name)
-      (this->*handler)(m);
-    else if (early_.size() < kMaxEarly)
-      early_.push_back([this, handler, m] { (this->*handler)(m); });
-    else
-      gate_.reject(name, "before SESSION");
-  };
-  subscribe(bus_, channel, on_message, [this, name] { gate_.reject(name, "undecodable"); });
+  early_.listen(bus_, gate_, channel, [this, handler](const Message& m) { (this->*handler)(m); });
 }
 
 void BackendNode::onSession(const session_t& m) {
@@ -69,7 +58,7 @@ void BackendNode::onSession(const session_t& m) {
     if (stage != "odometry" && stage != "planes" && stage != "backend")
       spdlog::warn("SESSION lists stage '{}', which this version does not have: rounds go on without it",
                    stage);
-  for (const auto& handle : std::exchange(early_, {})) handle();
+  early_.open();
 }
 
 void BackendNode::onOdometry(const odometry_t& m) {

@@ -12,6 +12,7 @@
 #include "common/base/performance.h"
 #include "common/bus/bus.h"
 #include "common/bus/channels.h"
+#include "common/bus/early_messages.h"
 #include "common/bus/input_gate.h"
 #include "common/bus/publisher.h"
 #include "common/types/session.h"
@@ -95,10 +96,10 @@ class BackendNode {
   KeyframeAssembly assembly_;
 
   std::optional<Session> session_;
-  std::vector<std::function<void()>> early_;  // what came before SESSION, in order of arrival
-  std::deque<OdometryEstimate> pending_;      // accepted, not yet worked off
-  int64_t announced_by_odometry_ = -1;        // newest keyframe that ODOMETRY named
-  int64_t announced_by_keyframe_ = -1;        // newest keyframe that KEYFRAME named
+  EarlyMessages early_;
+  std::deque<OdometryEstimate> pending_;  // accepted, not yet worked off
+  int64_t announced_by_odometry_ = -1;    // newest keyframe that ODOMETRY named
+  int64_t announced_by_keyframe_ = -1;    // newest keyframe that KEYFRAME named
   int64_t newest_scan_ = -1;
   Time newest_time_;
   int64_t next_keyframe_ = 0;

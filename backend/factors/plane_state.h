@@ -18,12 +18,12 @@ struct PlaneState {
   PlaneState anchoredAt(const Eigen::Vector3d& p) const { return {normal, distance(p), p}; }
 };
 
-// A plane's covariance of (tilt_u [rad], tilt_v [rad], offset [m]) moved from its anchor to another one:
-// offset' = offset + n.(p - anchor), and n moves along B(n) tilt.
-inline Eigen::Matrix3d covarianceAnchoredAt(const PlaneState& plane, const Eigen::Matrix3d& covariance,
-                                            const Eigen::Vector3d& p) {
+// Covariance of a plane state's (tilt_u [rad], tilt_v [rad], offset [m]), carried from one anchor to another:
+// the lever turns tilt into offset, offset' = offset + n.(to - from), and n moves along tangentBasis(n) tilt.
+inline Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal,
+                                       const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-  J.block<1, 2>(2, 0) = (p - plane.anchor).transpose() * tangentBasis(plane.normal);
+  J.block<1, 2>(2, 0) = (to - from).transpose() * tangentBasis(normal);
   return J * covariance * J.transpose();
 }
 

@@ -38,25 +38,15 @@ PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, co
   return r;
 }
 
-Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal,
-                                const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-  J.block<1, 2>(2, 0) = (to - from).transpose() * tangentBasis(normal);
-  return J * covariance * J.transpose();
-}
-
 Eigen::Matrix3d alongNormal(const Eigen::Matrix3d& covariance) {
   const Eigen::Vector3d sign(1, 1, -1);
   return sign.asDiagonal() * covariance * sign.asDiagonal();
 }
 
-// The smallest turn that takes one normal to the other, so that the axes are compared in one plane.
 Eigen::Matrix3d reframedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal_then,
                                    const Eigen::Vector3d& normal_now) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(normal_then, normal_now);
   Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-  J.topLeftCorner<2, 2>() =
-      tangentBasis(normal_now).transpose() * turn.toRotationMatrix() * tangentBasis(normal_then);
+  J.topLeftCorner<2, 2>() = tangentTurn(normal_then, normal_now);
   return J * covariance * J.transpose();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "backend/factors/plane_state.h"
 #include "backend/graph/situational_graph.h"
 
 namespace sgraphs {
@@ -15,11 +16,6 @@ PlaneResidual planeResidual(const PlaneObservation& z, const SE3& T_map_body, co
 
 // How an observation's (tilt_u, tilt_v, offset) changes with the pose it is seen from, tangent of body.
 Eigen::Matrix<double, 3, 6> observationByPose(const PlaneObservation& z);
-
-// Covariance of a plane state's tangent, carried from one point on the plane to another: the lever turns tilt
-// into offset. u, v are tangentBasis(normal).
-Eigen::Matrix3d movedCovariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& normal,
-                                const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 // A plane state's offset moves it against its normal, n.(p - a) + offset = 0; what nodes, messages and files
 // say of an offset is along it (plane_t). The step from either to the other.

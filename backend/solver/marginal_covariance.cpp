@@ -117,10 +117,7 @@ int Marginals::tangentSize(int state) const {
 std::optional<Eigen::Matrix2d> Marginals::turnSince(int state) const {
   const State& s = graph_.states[static_cast<size_t>(state)];
   if (s.kind != StateKind::kPlane) return std::nullopt;
-  const Eigen::Vector3d& then = normals_[static_cast<size_t>(state)];
-  const Eigen::Vector3d now(s.x.data());
-  const Eigen::Matrix3d R = Eigen::Quaterniond::FromTwoVectors(now, then).toRotationMatrix();
-  return tangentBasis(then).transpose() * R * tangentBasis(now);
+  return tangentTurn(Eigen::Vector3d(s.x.data()), normals_[static_cast<size_t>(state)]);
 }
 
 Eigen::VectorXd Marginals::toThen(int state, Eigen::VectorXd v) const {

@@ -8,6 +8,9 @@ namespace sgraphs {
 // Corners counter-clockwise, not closed.
 using Polygon2d = std::vector<Eigen::Vector2d>;
 
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+double distanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+
 // Convex hull; empty if the points lie on a line.
 Polygon2d convexHull(Polygon2d points);
 

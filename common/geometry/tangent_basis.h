@@ -11,4 +11,8 @@ using TangentBasis = Eigen::Matrix<double, 3, 2>;
 // orthonormal basis, revisited", 2017).
 TangentBasis tangentBasis(const Eigen::Vector3d& n);
 
+// Takes coordinates across `from` to those across `to`, carried along by the smallest turn between the two
+// unit vectors: a rotation, also where the basis flips between them.
+Eigen::Matrix2d tangentTurn(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 }  // namespace sgraphs

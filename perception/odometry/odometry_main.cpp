@@ -1,8 +1,3 @@
-#include <chrono>
-#include <cstdio>
-#include <thread>
-
-#include "common/base/error.h"
 #include "common/bus/lcm_bus.h"
 #include "tools/system/process.h"
 #include "tools/system/stages.h"
@@ -20,13 +15,7 @@ int main(int argc, char** argv) {
     hooks.publish_status = [&node] { node.publishStatus(); };
     hooks.finish = [&node](const std::string& why) { node.finish(why); };
     runLoop(bus, setup, hooks);
-    // A datagram may be lost, and the backend waits for this one.
-    for (int i = 0; i < 3; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(200));
-      node.repeatEnd();
-    }
-    if (node.whyNot().empty()) return kExitDone;
-    std::fprintf(stderr, "%s: not reproducible: %s\n", text.name.c_str(), node.whyNot().c_str());
-    return kExitNotReproducible;
+    return leaveAfterEnd(
+        text, [&node] { node.repeatEnd(); }, node.whyNot());
   });
 }

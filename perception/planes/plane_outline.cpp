@@ -9,10 +9,6 @@
 namespace sgraphs {
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
   return cross(b - a, p - a);
 }
@@ -23,12 +19,6 @@ bool segmentsTouch(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
       std::max(a.y(), b.y()) < std::min(c.y(), d.y()) || std::max(c.y(), d.y()) < std::min(a.y(), b.y()))
     return false;
   return side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
-}
-
-double distanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const double length2 = (b - a).squaredNorm();
-  const double s = length2 > 0 ? std::clamp((p - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - s * (b - a)).norm();
 }
 
 // Walks along the edges of the filled cells with the filled side on the left, from the lowest cell's lower

@@ -7,34 +7,18 @@
 #include "common/bus/status.h"
 
 namespace sgraphs {
-namespace {
-
-// Messages that may wait for SESSION.
-constexpr size_t kMaxEarly = 2000;
-
-}  // namespace
-
 PlanesNode::PlanesNode(Bus& bus, Step step) : bus_(bus), publisher_(bus), step_(std::move(step)) {
-  listen(channels::kSession, &PlanesNode::onSession);
+  subscribe(
+      bus_, channels::kSession, [this](const session_t& m) { onSession(m); },
+      [this] { gate_.reject(channels::kSession.name, "undecodable"); });
   listen(channels::kKeyframe, &PlanesNode::onKeyframe);
   listen(channels::kStreamEnd, &PlanesNode::onStreamEnd);
   listen(channels::kOdometryEnd, &PlanesNode::onOdometryEnd);
 }
 
-// SESSION comes from another process than KEYFRAME, and alone says which session this run belongs to: what
-// comes before it is held back.
 template <typename Message>
 void PlanesNode::listen(const Channel<Message>& channel, void (PlanesNode::*handler)(const Message&)) {
-  const std::string name = channel.name;
-  const auto on_message = [this, name, handler](const Message& m) {
-    if (session_ || name == channels::kSession.name)
-      (this->*handler)(m);
-    else if (early_.size() < kMaxEarly)
-      early_.push_back([this, handler, m] { (this->*handler)(m); });
-    else
-      gate_.reject(name, "before SESSION");
-  };
-  subscribe(bus_, channel, on_message, [this, name] { gate_.reject(name, "undecodable"); });
+  early_.listen(bus_, gate_, channel, [this, handler](const Message& m) { (this->*handler)(m); });
 }
 
 void PlanesNode::onSession(const session_t& m) {
@@ -49,7 +33,7 @@ void PlanesNode::onSession(const session_t& m) {
   publisher_.setSession(session->id);
   const auto& stages = session->stages;
   takes_part_ = stages.empty() || std::find(stages.begin(), stages.end(), "planes") != stages.end();
-  for (const auto& handle : std::exchange(early_, {})) handle();
+  early_.open();
 }
 
 void PlanesNode::onKeyframe(const keyframe_t& m) {

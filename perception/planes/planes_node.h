@@ -8,6 +8,7 @@
 #include "common/base/performance.h"
 #include "common/bus/bus.h"
 #include "common/bus/channels.h"
+#include "common/bus/early_messages.h"
 #include "common/bus/input_gate.h"
 #include "common/bus/publisher.h"
 #include "common/types/plane.h"
@@ -61,9 +62,9 @@ class PlanesNode {
 
   std::optional<Session> session_;
   bool takes_part_ = false;
-  std::vector<std::function<void()>> early_;  // what came before SESSION, in order of arrival
-  int64_t next_ = 0;                          // keyframe
-  int64_t announced_ = -1;                    // newest keyframe heard of
+  EarlyMessages early_;
+  int64_t next_ = 0;        // keyframe
+  int64_t announced_ = -1;  // newest keyframe heard of
   Time newest_time_;
   bool stream_ended_ = false;
   std::optional<stream_end_t> end_;

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
+#include <thread>
 #include <vector>
 
 #include "common/base/error.h"
@@ -129,6 +131,17 @@ void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
     status.restart();
   }
   hooks.publish_status();
+}
+
+int leaveAfterEnd(const ProcessText& text, const std::function<void()>& repeat_end,
+                  const std::string& why_not) {
+  for (int i = 0; i < 3; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    repeat_end();
+  }
+  if (why_not.empty()) return kExitDone;
+  std::fprintf(stderr, "%s: not reproducible: %s\n", text.name.c_str(), why_not.c_str());
+  return kExitNotReproducible;
 }
 
 }  // namespace sgraphs

@@ -39,4 +39,9 @@ struct LoopHooks {
 // Wall time decides only that nothing comes any more, and then the run is not reproducible.
 void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks);
 
+// The end of a stage that another waits for: `repeat_end` sends its last message three times more, since a
+// datagram may be lost. The exit code; why the run is not reproducible is said on stderr.
+int leaveAfterEnd(const ProcessText& text, const std::function<void()>& repeat_end,
+                  const std::string& why_not);
+
 }  // namespace sgraphs

@@ -139,7 +139,8 @@ TEST(PlaneStateTest, CovarianceMovesWithTheAnchor) {
   const Eigen::Matrix3d root = Eigen::Map<const Eigen::Matrix3d>(randomVector(9, 0.1, random).eval().data());
   const Eigen::Matrix3d covariance = root * root.transpose();
   const Eigen::Matrix3d expected = J * covariance * J.transpose();
-  EXPECT_LT((covarianceAnchoredAt(plane, covariance, p) - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_LT((movedCovariance(covariance, plane.normal, plane.anchor, p) - expected).norm(),
+            1e-5 * expected.norm());
 }
 
 TEST(UnitVectorManifoldTest, OppositeDirectionIsHalfATurnAway) {
