@@ -8,10 +8,10 @@
 #include "common/bus/log_file.h"
 #include "common/io/tum.h"
 #include "drivers/recording/recording_writer.h"
-#include "tools/simulate/building.h"
-#include "tools/simulate/legs_odometry.h"
-#include "tools/simulate/scene_file.h"
-#include "tools/simulate/sensor_simulator.h"
+#include "tools/simulate/building/building.h"
+#include "tools/simulate/scene/scene_file.h"
+#include "tools/simulate/sensor/legs_odometry.h"
+#include "tools/simulate/sensor/sensor_simulator.h"
 
 namespace sgraphs::simulate {
 namespace {

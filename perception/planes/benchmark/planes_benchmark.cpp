@@ -7,8 +7,8 @@
 
 #include "perception/odometry/odometry.h"
 #include "perception/planes/plane_segmentation.h"
-#include "tools/simulate/scene_file.h"
-#include "tools/simulate/test_worlds.h"
+#include "tools/simulate/scene/scene_file.h"
+#include "tools/simulate/scene/test_worlds.h"
 
 namespace sgraphs {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/types/session.h"
 #include "perception/odometry/odometry.h"
 #include "perception/odometry/surfel_map.h"
-#include "tools/simulate/legs_odometry.h"
-#include "tools/simulate/test_worlds.h"
+#include "tools/simulate/scene/test_worlds.h"
+#include "tools/simulate/sensor/legs_odometry.h"
 
 namespace sgraphs::testing_support {
 

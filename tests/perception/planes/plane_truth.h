@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/types/plane.h"
-#include "tools/simulate/test_worlds.h"
+#include "tools/simulate/scene/test_worlds.h"
 
 namespace sgraphs::testing_support {
 

@@ -15,9 +15,9 @@
 #include "common/io/tum.h"
 #include "drivers/velodyne/vlp16_decoder.h"
 #include "lcmtypes/convert/convert.h"
-#include "tools/simulate/building.h"
-#include "tools/simulate/ray_caster.h"
-#include "tools/simulate/scene_file.h"
+#include "tools/simulate/building/building.h"
+#include "tools/simulate/building/ray_caster.h"
+#include "tools/simulate/scene/scene_file.h"
 
 namespace sgraphs::simulate {
 namespace {

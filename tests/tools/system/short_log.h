@@ -5,8 +5,8 @@
 
 #include "common/bus/log_file.h"
 #include "drivers/recording/recording_writer.h"
-#include "tools/simulate/legs_odometry.h"
-#include "tools/simulate/test_worlds.h"
+#include "tools/simulate/scene/test_worlds.h"
+#include "tools/simulate/sensor/legs_odometry.h"
 
 namespace sgraphs::testing {
 

@@ -1,0 +1,162 @@
+#include "tools/simulate/sensor/sensor_simulator.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+#include "tools/simulate/sensor/random_stream.h"
+
+namespace sgraphs::simulate {
+namespace {
+
+using namespace vlp16;
+
+constexpr double kDegree_rad = std::numbers::pi / 180;
+constexpr int64_t kPacketsPerTask = 16;
+
+void put16(uint8_t* at, uint32_t value) {
+  at[0] = static_cast<uint8_t>(value);
+  at[1] = static_cast<uint8_t>(value >> 8);
+}
+
+// Share of the light that comes back shrinks as a surface is seen more obliquely.
+uint8_t reflectivityOf(const RayHit& hit) {
+  return static_cast<uint8_t>(std::lround(hit.reflectivity * (0.4 + 0.6 * hit.cos_incidence)));
+}
+
+}  // namespace
+
+uint32_t microsecondsPastHour(Time time) {
+  constexpr int64_t kHour_us = 3600000000;
+  return static_cast<uint32_t>(((time.us % kHour_us) + kHour_us) % kHour_us);
+}
+
+SensorSimulator::SensorSimulator(const RayCaster& building, const Trajectory& trajectory,
+                                 const SE3& T_body_lidar, const SensorModel& model, uint64_t seed)
+    : building_(building), trajectory_(trajectory), T_body_lidar_(T_body_lidar), model_(model), seed_(seed) {
+  for (size_t i = 0; i < kLasers; ++i) {
+    cos_elevation_[i] = std::cos(kElevation_deg[i] * kDegree_rad);
+    sin_elevation_[i] = std::sin(kElevation_deg[i] * kDegree_rad);
+  }
+}
+
+double SensorSimulator::azimuthDeg(double offset_us) const {
+  return model_.start_azimuth_deg + model_.rpm * 6e-6 * offset_us;
+}
+
+SensorSimulator::Return SensorSimulator::measure(int laser, double offset_us, double noise,
+                                                 double chance) const {
+  const auto i = static_cast<size_t>(laser);
+  const double azimuth = azimuthDeg(offset_us) * kDegree_rad;
+  const Eigen::Vector3d ray_lidar(cos_elevation_[i] * std::cos(azimuth),
+                                  -cos_elevation_[i] * std::sin(azimuth), sin_elevation_[i]);
+  const SE3 T_building_lidar = trajectory_.poseAtOffset(offset_us * 1e-6) * T_body_lidar_;
+  const Eigen::Vector3d origin = T_building_lidar * Eigen::Vector3d(0, 0, kVerticalOffset_mm[i] * 1e-3);
+  const auto hit = building_.cast(origin, T_building_lidar.rotation * ray_lidar, model_.max_range_m);
+  if (!hit || hit->range_m < model_.min_range_m) return {};
+  const double incidence_deg = std::acos(hit->cos_incidence) / kDegree_rad;
+  if (incidence_deg > model_.grazing_drop_deg) {
+    const double x = (incidence_deg - model_.grazing_drop_deg) / (90.0 - model_.grazing_drop_deg);
+    if (chance < x * x) return {};
+  }
+  const double steps = std::round((hit->range_m + model_.range_sigma_m * noise) / kRangeStep_m);
+  return {std::clamp(steps, 1.0, 65535.0) * kRangeStep_m, reflectivityOf(*hit)};
+}
+
+std::array<SensorSimulator::Return, kLasers> SensorSimulator::fire(int64_t sequence) const {
+  RandomStream random(seed_, static_cast<uint64_t>(sequence));
+  std::array<Return, kLasers> returns;
+  for (int laser = 0; laser < kLasers; ++laser) {
+    const double noise = random.normal(), chance = random.uniform();
+    const double offset_us = static_cast<double>(sequence) * kSequencePeriod_us + laser * kLaserPeriod_us;
+    returns[static_cast<size_t>(laser)] = measure(laser, offset_us, noise, chance);
+  }
+  return returns;
+}
+
+int64_t SensorSimulator::numPackets() const {
+  return static_cast<int64_t>(static_cast<double>(trajectory_.duration().us) / kPacketPeriod_us);
+}
+
+SensorPacket SensorSimulator::packet(int64_t index) const {
+  SensorPacket out;
+  out.time = trajectory_.start() + Duration{std::llround(static_cast<double>(index) * kPacketPeriod_us)};
+  uint8_t* at = out.bytes.data();
+  for (int block = 0; block < kBlocks; ++block) {
+    const int64_t first = index * kSequencesPerPacket + int64_t{block} * kSequencesPerBlock;
+    const auto azimuth = std::llround(azimuthDeg(static_cast<double>(first) * kSequencePeriod_us) * 100.0);
+    put16(at, 0xEEFF);
+    put16(at + 2, static_cast<uint32_t>(((azimuth % 36000) + 36000) % 36000));
+    at += 4;
+    for (int64_t sequence = first; sequence < first + kSequencesPerBlock; ++sequence)
+      for (const Return& r : fire(sequence)) {
+        put16(at, static_cast<uint32_t>(std::lround(r.range_m / kRangeStep_m)));
+        at[2] = r.reflectivity;
+        at += 3;
+      }
+  }
+  const uint32_t stamp = microsecondsPastHour(out.time);
+  put16(at, stamp);
+  put16(at + 2, stamp >> 16);
+  at[4] = 0x37;
+  at[5] = 0x22;
+  return out;
+}
+
+std::vector<SensorPacket> SensorSimulator::packets(int64_t first, int64_t count, int num_threads) const {
+  std::vector<SensorPacket> out(static_cast<size_t>(std::max<int64_t>(count, 0)));
+  std::atomic<int64_t> next{0};
+  const auto work = [&] {
+    for (int64_t begin; (begin = next.fetch_add(kPacketsPerTask)) < count;)
+      for (int64_t i = begin; i < std::min(begin + kPacketsPerTask, count); ++i)
+        out[static_cast<size_t>(i)] = packet(first + i);
+  };
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < num_threads; ++i) helpers.emplace_back(work);
+  work();
+  helpers.clear();  // joins them
+  return out;
+}
+
+int64_t SensorSimulator::numScans() const {
+  const double revolution_us = 60e6 / model_.rpm;
+  return static_cast<int64_t>(static_cast<double>(trajectory_.duration().us) / revolution_us);
+}
+
+LidarScan SensorSimulator::scan(int64_t index) const {
+  const double sequences = 60e6 / model_.rpm / kSequencePeriod_us;  // per revolution
+  const auto first = static_cast<int64_t>(std::ceil(static_cast<double>(index) * sequences));
+  const auto last = static_cast<int64_t>(std::ceil(static_cast<double>(index + 1) * sequences)) - 1;
+  const auto instant_us = [](int64_t sequence, int laser) {
+    return std::llround(static_cast<double>(sequence) * kSequencePeriod_us + laser * kLaserPeriod_us);
+  };
+  LidarScan scan;
+  scan.begin = trajectory_.start() + Duration{instant_us(first, 0)};
+  scan.end = trajectory_.start() + Duration{instant_us(last, kLasers - 1)};
+  scan.sequence = index;
+  scan.num_rings = kLasers;
+  for (int64_t sequence = first; sequence <= last; ++sequence) {
+    const auto returns = fire(sequence);
+    for (int laser = 0; laser < kLasers; ++laser) {
+      const auto i = static_cast<size_t>(laser);
+      const double range = returns[i].range_m;
+      if (range <= 0) continue;
+      const double offset_us = static_cast<double>(sequence) * kSequencePeriod_us + laser * kLaserPeriod_us;
+      const double azimuth = azimuthDeg(offset_us) * kDegree_rad, flat = range * cos_elevation_[i];
+      LidarPoint point;
+      point.position_lidar = Eigen::Vector3d(flat * std::cos(azimuth), -flat * std::sin(azimuth),
+                                             range * sin_elevation_[i] + kVerticalOffset_mm[i] * 1e-3)
+                                 .cast<float>();
+      point.time_us = static_cast<int32_t>((trajectory_.start() - scan.end).us + instant_us(sequence, laser));
+      point.column = static_cast<uint16_t>(sequence - first);
+      point.ring = static_cast<uint8_t>(ring(laser));
+      point.reflectivity = returns[i].reflectivity;
+      scan.points.push_back(point);
+    }
+  }
+  return scan;
+}
+
+}  // namespace sgraphs::simulate

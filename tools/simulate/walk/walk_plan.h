@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "tools/simulate/walk/walk.h"
+
+namespace sgraphs::simulate {
+
+// State of the planned walk, before smoothing.
+struct WalkState {
+  Eigen::Vector2d xy = Eigen::Vector2d::Zero();
+  double yaw_rad = 0;   // continuous: not wrapped
+  double activity = 0;  // 0 standing, 1 walking or turning in earnest
+};
+
+// The walk as phases: standing, turning on the spot, runs of legs and arcs. Position and speed are
+// continuous, yaw is continuous.
+class WalkPlan {
+ public:
+  explicit WalkPlan(const WalkPath& path);
+
+  double duration() const { return duration_s_; }
+  // States before the start and after the end are the first and the last.
+  WalkState at(double seconds) const;
+
+ private:
+  struct Phase {
+    double begin_s;
+    double duration_s;
+    std::function<WalkState(double)> state;  // of the seconds since begin_s
+  };
+
+  void stand(double seconds);
+  void turn(double angle_rad);
+  // Walks from waypoint `first` to waypoint `last` with arcs at the corners between.
+  void run(size_t first, size_t last);
+  bool stopsAt(size_t waypoint) const;
+  double cornerRadius(size_t waypoint) const;
+  void append(double duration_s, std::function<WalkState(double)> state);
+
+  WalkPath path_;
+  std::vector<Phase> phases_;
+  double duration_s_ = 0;
+  WalkState now_;  // at the end of the last phase
+};
+
+}  // namespace sgraphs::simulate
