@@ -147,7 +147,8 @@ TEST(GraphPlanesTest, G2oReproducesOurChi2OfPlanes) {
   EXPECT_EQ(loaded.num_plane_edges, graph.observations.size());
   EXPECT_NEAR(loaded.plane_chi2, chi2, 0.02 * chi2);
   // Each plane by itself, level ones included: azimuth must not be taken near a pole.
-  for (const auto& [id, expected] : of_plane) {
+  for (const auto& of : of_plane) {
+    const PlaneId id = of.first;
     SituationalGraph one = graph;
     std::erase_if(one.observations, [&](const ObservationFactor& f) { return f.plane != id; });
     EXPECT_NEAR(Loaded(graphG2o(one)).plane_chi2, expected, 0.03 * expected) << id.str();

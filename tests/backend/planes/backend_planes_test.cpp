@@ -57,13 +57,14 @@ TEST(BackendPlanesTest, EveryFaceIsOnePlaneAndTheLapCloses) {
   EXPECT_EQ(with.graph().planes.size(), walk.faces.size());
   EXPECT_LT(with.ate_m, 0.02);
   EXPECT_LT(with.ate_m, 0.3 * without.ate_m);
-  for (const auto& [id, plane] : with.graph().planes) {
+  for (const auto& item : with.graph().planes) {
+    const auto& plane = item.second;
     const auto of = std::find_if(walk.faces.begin(), walk.faces.end(), [&](const Face& face) {
       const Eigen::Vector3d normal = walk.T_map_world().rotation * face.normal;
       const Eigen::Vector3d centre = walk.T_map_world() * face.centre;
       return normal.dot(plane.normal_map) > 0.999 && std::abs(plane.distance(centre)) < 0.05;
     });
-    EXPECT_NE(of, walk.faces.end()) << id.str();
+    EXPECT_NE(of, walk.faces.end()) << item.first.str();
   }
 }
 

@@ -72,12 +72,12 @@ struct TwoRooms {
   }
 };
 
-inline EstimatedWall shifted(EstimatedWall wall, double offset_m) {
+inline EstimatedWall shifted(const EstimatedWall& wall, double offset_m) {
   return moved(wall, {Eigen::Quaterniond::Identity(), offset_m * wall.normal});
 }
 
 // Turned about the upright line through its centroid.
-inline EstimatedWall turned(EstimatedWall wall, double angle_rad) {
+inline EstimatedWall turned(const EstimatedWall& wall, double angle_rad) {
   const Eigen::Quaterniond q(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()));
   return moved(wall, {q, wall.centroid - q * wall.centroid});
 }
