@@ -88,10 +88,11 @@ SimulateResult simulate(const SimulateOptions& options, const Progress& progress
   const std::string plan_path = findScene(options.scene);
   const Scene scene = loadScene(plan_path);
   const TriangleMesh mesh = buildMesh(scene);
-  const RayCaster caster(mesh);
+  const RayCaster caster(mesh, buildGlass(scene));
   const Trajectory trajectory =
       walkAlong(scene.path, scene.start, scene.floors_z_m[static_cast<size_t>(scene.path_floor)]);
-  const SensorSimulator sensor(caster, trajectory, scene.T_body_lidar, scene.sensor, options.seed);
+  const SensorSimulator sensor(caster, trajectory, scene.T_body_lidar, scene.sensor, options.seed,
+                               People(scene.people, scene.floors_z_m));
   std::vector<BodyOdometry> odometry;
   if (options.with_odometry) odometry = simulateLegsOdometry(trajectory, {}, options.seed);
 

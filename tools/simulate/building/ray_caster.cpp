@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "common/base/error.h"
 
@@ -28,72 +29,114 @@ double squaredDistance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const
                    squaredDistanceToSegment(p, c, a)});
 }
 
+double squaredDistance(const Eigen::Vector3d& p, const TriangleMesh& mesh) {
+  double best = std::numeric_limits<double>::max();
+  for (const auto& t : mesh.triangles)
+    best = std::min(best, squaredDistance(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+  return best;
+}
+
+// A mesh as Embree searches it.
+class SearchTree {
+ public:
+  SearchTree() = default;
+  SearchTree(const SearchTree&) = delete;
+  SearchTree& operator=(const SearchTree&) = delete;
+  ~SearchTree() {
+    if (scene_) rtcReleaseScene(scene_);
+  }
+
+  bool empty() const { return !scene_; }
+
+  void build(RTCDevice device, const TriangleMesh& mesh) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
+    for (const auto& v : mesh.vertices)
+      for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(v[i]);
+    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles.size()));
+    for (const auto& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
+    rtcCommitGeometry(geometry);
+    scene_ = rtcNewScene(device);
+    // Robust: no ray slips through the edge that two triangles share.
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+
+  std::optional<RayHit> first(const TriangleMesh& mesh, const Eigen::Vector3d& origin,
+                              const Eigen::Vector3d& direction, double min_range_m,
+                              double max_range_m) const {
+    RTCRayHit query{};
+    query.ray.org_x = static_cast<float>(origin.x());
+    query.ray.org_y = static_cast<float>(origin.y());
+    query.ray.org_z = static_cast<float>(origin.z());
+    query.ray.dir_x = static_cast<float>(direction.x());
+    query.ray.dir_y = static_cast<float>(direction.y());
+    query.ray.dir_z = static_cast<float>(direction.z());
+    query.ray.tnear = static_cast<float>(min_range_m);
+    query.ray.tfar = static_cast<float>(max_range_m);
+    query.ray.mask = ~0U;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    const Eigen::Vector3d normal =
+        Eigen::Vector3d(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
+    return RayHit{query.ray.tfar, std::min(1.0, std::abs(normal.dot(direction))),
+                  mesh.reflectivity[query.hit.primID]};
+  }
+
+ private:
+  RTCScene scene_ = nullptr;
+};
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+
 }  // namespace
 
 struct RayCaster::Impl {
-  TriangleMesh mesh;
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-
-  ~Impl() {
-    if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
+  TriangleMesh mesh, glass;
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease> device;
+  SearchTree mesh_tree, glass_tree;  // after the device: they go before it
 };
 
-RayCaster::RayCaster(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+RayCaster::RayCaster(const TriangleMesh& mesh, const TriangleMesh& glass) : impl_(std::make_unique<Impl>()) {
   if (mesh.triangles.empty()) throw Error("the building has no surface to measure: give it walls");
-  impl_->mesh = mesh;
   // One thread and one instruction set build the same tree and intersect with the same rounding everywhere.
-  impl_->device = rtcNewDevice("threads=1,isa=sse4.2");
+  impl_->device.reset(rtcNewDevice("threads=1,isa=sse4.2"));
   if (!impl_->device) throw Error("the ray caster does not start: it needs a processor with SSE 4.2");
-  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
-  for (const auto& v : mesh.vertices)
-    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(v[i]);
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), mesh.triangles.size()));
-  for (const auto& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
-  rtcCommitGeometry(geometry);
-  impl_->scene = rtcNewScene(impl_->device);
-  // Robust: no ray slips through the edge that two triangles share.
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcAttachGeometry(impl_->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(impl_->scene);
+  impl_->mesh = mesh;
+  impl_->mesh_tree.build(impl_->device.get(), mesh);
+  if (glass.triangles.empty()) return;
+  impl_->glass = glass;
+  impl_->glass_tree.build(impl_->device.get(), glass);
 }
 
 RayCaster::~RayCaster() = default;
 
 std::optional<RayHit> RayCaster::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                       double max_range_m) const {
-  RTCRayHit query{};
-  query.ray.org_x = static_cast<float>(origin.x());
-  query.ray.org_y = static_cast<float>(origin.y());
-  query.ray.org_z = static_cast<float>(origin.z());
-  query.ray.dir_x = static_cast<float>(direction.x());
-  query.ray.dir_y = static_cast<float>(direction.y());
-  query.ray.dir_z = static_cast<float>(direction.z());
-  query.ray.tfar = static_cast<float>(max_range_m);
-  query.ray.mask = ~0U;
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const Eigen::Vector3d normal = Eigen::Vector3d(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
-  return RayHit{query.ray.tfar, std::min(1.0, std::abs(normal.dot(direction))),
-                impl_->mesh.reflectivity[query.hit.primID]};
+  return impl_->mesh_tree.first(impl_->mesh, origin, direction, 0, max_range_m);
+}
+
+bool RayCaster::hasGlass() const {
+  return !impl_->glass_tree.empty();
+}
+
+std::optional<RayHit> RayCaster::castGlass(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                           double min_range_m, double max_range_m) const {
+  if (!hasGlass()) return std::nullopt;
+  return impl_->glass_tree.first(impl_->glass, origin, direction, min_range_m, max_range_m);
 }
 
 double RayCaster::distanceToSurface(const Eigen::Vector3d& point) const {
-  const TriangleMesh& mesh = impl_->mesh;
-  double best = std::numeric_limits<double>::max();
-  for (const auto& t : mesh.triangles)
-    best =
-        std::min(best, squaredDistance(point, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
-  return std::sqrt(best);
+  return std::sqrt(std::min(squaredDistance(point, impl_->mesh), squaredDistance(point, impl_->glass)));
 }
 
 }  // namespace sgraphs::simulate

@@ -2,10 +2,18 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "common/base/error.h"
 
 namespace sgraphs::simulate {
+
+void TriangleMesh::addTriangle(const std::array<Eigen::Vector3d, 3>& corners, uint8_t surface_reflectivity) {
+  const auto first = static_cast<uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), corners.begin(), corners.end());
+  triangles.push_back({first, first + 1, first + 2});
+  reflectivity.push_back(surface_reflectivity);
+}
 
 void TriangleMesh::addQuad(const std::array<Eigen::Vector3d, 4>& corners, uint8_t surface_reflectivity) {
   const auto first = static_cast<uint32_t>(vertices.size());
@@ -31,6 +39,21 @@ void TriangleMesh::addBox(const Eigen::Vector3d& center, const Eigen::Vector3d& 
                         {0, 2, 3, 1},
                         {4, 5, 7, 6}})
     addQuad({p[f[0]], p[f[1]], p[f[2]], p[f[3]]}, surface_reflectivity);
+}
+
+void TriangleMesh::addPrism(const Eigen::Vector3d& base, double radius, double height, int sides,
+                            uint8_t surface_reflectivity) {
+  const Eigen::Vector3d up(0, 0, height);
+  const auto corner = [&](int i) {
+    const double angle = 2 * std::numbers::pi * (i % sides) / sides;
+    return Eigen::Vector3d(base + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0));
+  };
+  for (int i = 0; i < sides; ++i) {
+    const Eigen::Vector3d a = corner(i), b = corner(i + 1);
+    addQuad({a, b, b + up, a + up}, surface_reflectivity);
+    addTriangle({base, b, a}, surface_reflectivity);
+    addTriangle({base + up, a + up, b + up}, surface_reflectivity);
+  }
 }
 
 void writePly(const std::string& path, const TriangleMesh& mesh) {

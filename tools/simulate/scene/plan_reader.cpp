@@ -89,6 +89,12 @@ int PlanReader::integer(const char* key, int fallback) const {
   return at(key).get<int>();
 }
 
+bool PlanReader::flag(const char* key, bool fallback) const {
+  if (!has(key)) return fallback;
+  if (!at(key).is_boolean()) fail(key, "must be true or false");
+  return at(key).get<bool>();
+}
+
 std::string PlanReader::text(const char* key, const std::string& fallback) const {
   if (!has(key)) return fallback;
   if (!at(key).is_string()) fail(key, "must be a text in quotes");

@@ -25,6 +25,7 @@ class PlanReader {
   double number(const char* key) const;
   double number(const char* key, double fallback, double min, double max) const;
   int integer(const char* key, int fallback) const;
+  bool flag(const char* key, bool fallback) const;
   std::string text(const char* key, const std::string& fallback) const;
   Eigen::Vector2d xy(const char* key) const;
   Eigen::Vector3d xyz(const char* key) const;

@@ -16,7 +16,8 @@ Scene makeCorridor(double length_m, double width_m = 2.0, double height_m = 2.8)
 
 // A building ready to be measured; moves, but does not copy.
 struct SimulatedWorld {
-  explicit SimulatedWorld(const Scene& from) : scene(from), mesh(buildMesh(scene)), caster(mesh) {}
+  explicit SimulatedWorld(const Scene& from)
+      : scene(from), mesh(buildMesh(scene)), caster(mesh, buildGlass(scene)) {}
 
   Scene scene;
   TriangleMesh mesh;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <thread>
+#include <utility>
 
 #include "tools/simulate/sensor/random_stream.h"
 
@@ -26,6 +27,27 @@ uint8_t reflectivityOf(const RayHit& hit) {
   return static_cast<uint8_t>(std::lround(hit.reflectivity * (0.4 + 0.6 * hit.cos_incidence)));
 }
 
+// Glass, a model of ours after what is known of panes under a LiDAR: smooth glass throws light back to the
+// sensor near normal incidence only (Foster, Sun, Park and Kuipers, "VisAGGE: visible angle grid for glass
+// environments", ICRA 2013); the rest goes through. Ghosts, seen in a pane as in a mirror, are left out.
+constexpr double kGlassCone_rad = 12 * kDegree_rad;  // no return beyond this incidence
+constexpr double kGlassChance = 0.8;                 // of a return at normal incidence
+constexpr double kFaintestShare = 0.25;              // fainter echoes from behind glass are not noticed
+constexpr double kGlassStep_m = 1e-3;                // between a pane and the search for the next
+constexpr uint64_t kGlassSeed = 0x676c617373;        // draws apart from those of noise and drop-outs
+
+double glassReturnChance(double cos_incidence) {
+  const double x = std::acos(cos_incidence) / kGlassCone_rad;
+  return x < 1 ? kGlassChance * (1 - x * x) : 0.0;
+}
+
+// Share of light that passes a pane: Fresnel's reflectance of each of its two surfaces by Schlick's
+// approximation for a refractive index of 1.5, with all reflections between them.
+double glassTransmittance(double cos_incidence) {
+  const double reflected = 0.04 + 0.96 * std::pow(1 - cos_incidence, 5);
+  return (1 - reflected) / (1 + reflected);
+}
+
 }  // namespace
 
 uint32_t microsecondsPastHour(Time time) {
@@ -34,8 +56,14 @@ uint32_t microsecondsPastHour(Time time) {
 }
 
 SensorSimulator::SensorSimulator(const RayCaster& building, const Trajectory& trajectory,
-                                 const SE3& T_body_lidar, const SensorModel& model, uint64_t seed)
-    : building_(building), trajectory_(trajectory), T_body_lidar_(T_body_lidar), model_(model), seed_(seed) {
+                                 const SE3& T_body_lidar, const SensorModel& model, uint64_t seed,
+                                 People people)
+    : building_(building),
+      trajectory_(trajectory),
+      T_body_lidar_(T_body_lidar),
+      model_(model),
+      seed_(seed),
+      people_(std::move(people)) {
   for (size_t i = 0; i < kLasers; ++i) {
     cos_elevation_[i] = std::cos(kElevation_deg[i] * kDegree_rad);
     sin_elevation_[i] = std::sin(kElevation_deg[i] * kDegree_rad);
@@ -46,15 +74,36 @@ double SensorSimulator::azimuthDeg(double offset_us) const {
   return model_.start_azimuth_deg + model_.rpm * 6e-6 * offset_us;
 }
 
-SensorSimulator::Return SensorSimulator::measure(int laser, double offset_us, double noise,
-                                                 double chance) const {
+std::optional<RayHit> SensorSimulator::firstReturn(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray,
+                                                   const PeopleNow& people, uint64_t firing) const {
+  auto hit = building_.cast(origin, ray, model_.max_range_m);
+  if (!people.empty())
+    if (const auto person = people.cast(origin, ray, hit ? hit->range_m : model_.max_range_m)) hit = person;
+  if (!building_.hasGlass()) return hit;
+  RandomStream random(seed_ ^ kGlassSeed, firing);
+  const double end_m = hit ? hit->range_m : model_.max_range_m;
+  double begin_m = 0, kept = 1;  // share of the light that comes back through the panes so far
+  while (const auto pane = building_.castGlass(origin, ray, begin_m, end_m)) {
+    if (random.uniform() < kept * glassReturnChance(pane->cos_incidence)) return pane;
+    kept *= std::pow(glassTransmittance(pane->cos_incidence), 2);
+    begin_m = pane->range_m + kGlassStep_m;
+  }
+  if (!hit || kept < kFaintestShare) return std::nullopt;
+  hit->reflectivity = static_cast<uint8_t>(std::lround(hit->reflectivity * kept));
+  return hit;
+}
+
+SensorSimulator::Return SensorSimulator::measure(int64_t sequence, int laser, const PeopleNow& people,
+                                                 double noise, double chance) const {
   const auto i = static_cast<size_t>(laser);
+  const double offset_us = static_cast<double>(sequence) * kSequencePeriod_us + laser * kLaserPeriod_us;
   const double azimuth = azimuthDeg(offset_us) * kDegree_rad;
   const Eigen::Vector3d ray_lidar(cos_elevation_[i] * std::cos(azimuth),
                                   -cos_elevation_[i] * std::sin(azimuth), sin_elevation_[i]);
   const SE3 T_building_lidar = trajectory_.poseAtOffset(offset_us * 1e-6) * T_body_lidar_;
   const Eigen::Vector3d origin = T_building_lidar * Eigen::Vector3d(0, 0, kVerticalOffset_mm[i] * 1e-3);
-  const auto hit = building_.cast(origin, T_building_lidar.rotation * ray_lidar, model_.max_range_m);
+  const auto hit = firstReturn(origin, T_building_lidar.rotation * ray_lidar, people,
+                               static_cast<uint64_t>(sequence * kLasers + laser));
   if (!hit || hit->range_m < model_.min_range_m) return {};
   const double incidence_deg = std::acos(hit->cos_incidence) / kDegree_rad;
   if (incidence_deg > model_.grazing_drop_deg) {
@@ -67,11 +116,11 @@ SensorSimulator::Return SensorSimulator::measure(int laser, double offset_us, do
 
 std::array<SensorSimulator::Return, kLasers> SensorSimulator::fire(int64_t sequence) const {
   RandomStream random(seed_, static_cast<uint64_t>(sequence));
+  const PeopleNow people = people_.at(static_cast<double>(sequence) * kSequencePeriod_us * 1e-6);
   std::array<Return, kLasers> returns;
   for (int laser = 0; laser < kLasers; ++laser) {
     const double noise = random.normal(), chance = random.uniform();
-    const double offset_us = static_cast<double>(sequence) * kSequencePeriod_us + laser * kLaserPeriod_us;
-    returns[static_cast<size_t>(laser)] = measure(laser, offset_us, noise, chance);
+    returns[static_cast<size_t>(laser)] = measure(sequence, laser, people, noise, chance);
   }
   return returns;
 }

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/types/lidar_scan.h"
+#include "tools/simulate/building/people.h"
 #include "tools/simulate/building/ray_caster.h"
 #include "tools/simulate/sensor/sensor_model.h"
 #include "tools/simulate/walk/trajectory.h"
@@ -19,7 +21,8 @@ struct SensorPacket {
 
 // A VLP-16 carried along a trajectory: every laser fires at its own instant, from where the sensor is then.
 // Firing sequence k begins k * 55.296 us after the trajectory's start; the azimuth advances with time.
-// Results depend on (building, trajectory, model, seed) and on the index asked for only, not on the number of
+// People stand still during a sequence: they move by less than 0.1 mm. Results depend on (building, people,
+// trajectory, model, seed) and on the index asked for only, not on the number of
 // threads or the order of calls. All methods are safe to call from several threads.
 //
 // lidar frame (ROS): x forward = R cos(w) cos(az), y left = -R cos(w) sin(az), z up = R sin(w) + the laser's
@@ -28,7 +31,7 @@ class SensorSimulator {
  public:
   // Keeps references to `building`: it must outlive the simulator.
   SensorSimulator(const RayCaster& building, const Trajectory& trajectory, const SE3& T_body_lidar,
-                  const SensorModel& model = {}, uint64_t seed = 0);
+                  const SensorModel& model = {}, uint64_t seed = 0, People people = {});
 
   // Packets that are complete by the trajectory's end.
   int64_t numPackets() const;
@@ -52,13 +55,18 @@ class SensorSimulator {
 
   double azimuthDeg(double offset_us) const;  // not wrapped
   std::array<Return, vlp16::kLasers> fire(int64_t sequence) const;
-  Return measure(int laser, double offset_us, double noise, double chance) const;
+  // What one laser of one firing sequence measures.
+  Return measure(int64_t sequence, int laser, const PeopleNow& people, double noise, double chance) const;
+  // The surface that sends the ray back: the building's or a person's, or a pane of glass before it.
+  std::optional<RayHit> firstReturn(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray,
+                                    const PeopleNow& people, uint64_t firing) const;
 
   const RayCaster& building_;
   Trajectory trajectory_;
   SE3 T_body_lidar_;
   SensorModel model_;
   uint64_t seed_;
+  People people_;
   std::array<double, vlp16::kLasers> cos_elevation_;
   std::array<double, vlp16::kLasers> sin_elevation_;
 };

@@ -11,7 +11,8 @@ struct Waypoint {
   Eigen::Vector2d xy = Eigen::Vector2d::Zero();  // in the building [m]
   double pause_s = 0;                            // standing here; the turn follows on the spot
   // Height of the walking surface here above the path's floor [m]. Between waypoints it rises evenly with the
-  // distance walked: stairs and ramps begin and end at waypoints. The body pitches along.
+  // distance walked: stairs and ramps begin and end at waypoints. The body pitches along, as the ground under
+  // its feet does, 0.3 m before and behind its middle.
   double rise_m = 0;
 };
 
@@ -44,13 +45,13 @@ struct WalkPath {
 // Bounds that a walk keeps (the gait's sway aside): speed and yaw rate as in WalkPath; the acceleration is
 // that along the path and, in arcs, speed times yaw rate across it.
 //
-// The motion is a uniform cubic B-spline in x, y, yaw and strength of the gait, whose control points sample a
-// walk with bounded acceleration every kKnot_s. It is twice continuously differentiable, and, as each
-// derivative of the spline is a convex combination of differences of control points, the bounds of the
-// sampled walk hold for it too.
+// The motion is a uniform cubic B-spline in x, y, yaw, strength of the gait, rise and slope, whose control
+// points sample a walk with bounded acceleration every kKnot_s. It is twice continuously differentiable, and,
+// as each derivative of the spline is a convex combination of differences of control points, the bounds of
+// the sampled walk hold for it too.
 inline constexpr double kKnot_s = 0.25;
 
-// `floor_z_m`: height of the walking surface. The path needs at least one waypoint; consecutive ones differ.
+// `floor_z_m`: height of the path's floor. The path needs at least one waypoint; consecutive ones differ.
 Trajectory walkAlong(const WalkPath& path, Time start, double floor_z_m);
 
 }  // namespace sgraphs::simulate

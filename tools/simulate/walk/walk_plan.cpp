@@ -12,6 +12,7 @@ namespace {
 constexpr double kStep_m = 0.01;             // grid of the speed profile
 constexpr double kFarthestMiss_m = 0.25;     // of a waypoint, by the arc that rounds it
 constexpr double kSmallestRadius_m = 0.2;    // narrower arcs are turned on the spot
+constexpr double kHalfBody_m = 0.3;          // from the body's origin to the fore feet, and to the hind feet
 constexpr double kFullActivity_mps = 0.3;    // speed of full gait
 constexpr double kFullActivity_rad_s = 0.3;  // yaw rate of full gait
 
@@ -34,6 +35,7 @@ struct Element {
   Eigen::Vector2d xy = Eigen::Vector2d::Zero();  // at its beginning
   double yaw_rad = 0;
   double curvature = 0;  // [1/m], positive to the left
+  double slope = 0;      // rise per distance walked
 };
 
 // Elements with a speed profile: from rest to rest with bounded speed, acceleration and yaw rate.
@@ -53,11 +55,11 @@ class Run {
     step_m_ = length() / cells;
     speed_.assign(static_cast<size_t>(cells) + 1, path.speed_mps);
     for (const Element& e : elements_) {
-      if (e.curvature == 0) continue;
+      if (e.curvature == 0 && e.slope == 0) continue;
       const auto first = static_cast<size_t>(e.begin_m / step_m_);
       const auto last = static_cast<size_t>(std::ceil((e.begin_m + e.length_m) / step_m_));
       for (size_t i = first; i <= std::min(last, speed_.size() - 1); ++i)
-        speed_[i] = std::min(speed_[i], path.yaw_rate_rad_s / std::abs(e.curvature));
+        speed_[i] = std::min(speed_[i], fastest(e, path));
     }
     speed_.front() = speed_.back() = 0;
     const double gain = 2 * path.acceleration_mps2 * step_m_;
@@ -82,12 +84,19 @@ class Run {
   }
 
  private:
+  // Speed seen from above: the path's speed holds along the slope.
+  static double fastest(const Element& e, const WalkPath& path) {
+    const double along = path.speed_mps / std::hypot(1.0, e.slope);
+    return e.curvature == 0 ? along : std::min(along, path.yaw_rate_rad_s / std::abs(e.curvature));
+  }
+
   WalkState stateAt(double s, double speed) const {
     size_t k = 0;
     while (k + 1 < elements_.size() && elements_[k + 1].begin_m <= s) ++k;
     const Element& e = elements_[k];
     const double along = std::min(s - e.begin_m, e.length_m), turned = e.curvature * along;
     WalkState state;
+    state.walked_m = e.begin_m + along;
     state.yaw_rad = e.yaw_rad + turned;
     // Chord of the arc, in the direction half-way between the tangents.
     const double chord = std::abs(turned) < 1e-9 ? along : 2 * std::sin(0.5 * turned) / e.curvature;
@@ -105,10 +114,29 @@ class Run {
 
 }  // namespace
 
+void RiseProfile::add(double walked_m, double rise_m) {
+  if (knots_.empty() || walked_m > knots_.back().first) knots_.emplace_back(walked_m, rise_m);
+}
+
+double RiseProfile::at(double walked_m) const {
+  const auto next =
+      std::find_if(knots_.begin(), knots_.end(), [&](const auto& knot) { return knot.first > walked_m; });
+  if (next == knots_.begin()) return knots_.front().second;
+  if (next == knots_.end()) return knots_.back().second;
+  const auto& [s0, rise0] = *(next - 1);
+  const auto& [s1, rise1] = *next;
+  return rise0 + (rise1 - rise0) * (walked_m - s0) / (s1 - s0);
+}
+
+double RiseProfile::slope(double walked_m) const {
+  return (at(walked_m + kHalfBody_m) - at(walked_m - kHalfBody_m)) / (2 * kHalfBody_m);
+}
+
 WalkPlan::WalkPlan(const WalkPath& path) : path_(path) {
   const auto& points = path_.waypoints;
   now_.xy = points.front().xy;
   now_.yaw_rad = path_.start_heading_rad;
+  rise_.add(0, points.front().rise_m);
   stand(path_.start_pause_s + points.front().pause_s);
   for (size_t first = 0; first + 1 < points.size();) {
     size_t last = first + 1;
@@ -122,11 +150,16 @@ WalkPlan::WalkPlan(const WalkPath& path) : path_(path) {
 }
 
 WalkState WalkPlan::at(double seconds) const {
-  if (phases_.empty()) return now_;
-  const double t = std::clamp(seconds, 0.0, duration_s_);
-  size_t k = 0;
-  while (k + 1 < phases_.size() && phases_[k + 1].begin_s <= t) ++k;
-  return phases_[k].state(t - phases_[k].begin_s);
+  WalkState state = now_;
+  if (!phases_.empty()) {
+    const double t = std::clamp(seconds, 0.0, duration_s_);
+    size_t k = 0;
+    while (k + 1 < phases_.size() && phases_[k + 1].begin_s <= t) ++k;
+    state = phases_[k].state(t - phases_[k].begin_s);
+  }
+  state.rise_m = rise_.at(state.walked_m);
+  state.slope = rise_.slope(state.walked_m);
+  return state;
 }
 
 void WalkPlan::append(double duration_s, std::function<WalkState(double)> state) {
@@ -184,26 +217,37 @@ void WalkPlan::run(size_t first, size_t last) {
   const auto& points = path_.waypoints;
   auto course = std::make_shared<Run>();
   WalkState at = now_;
+  double leg_begin_m = 0;  // along the course: the middle of the arc at the leg's first waypoint
   for (size_t i = first; i < last; ++i) {
     const Eigen::Vector2d leg = points[i + 1].xy - at.xy;
     const bool corner = i + 1 < last;
     const double heading = headingOf(points[i + 1].xy - points[i].xy);
     const double angle = corner ? wrap(headingOf(points[i + 2].xy - points[i + 1].xy) - heading) : 0.0;
+    const bool arc = std::abs(angle) >= 1e-9;
     const double radius = corner ? cornerRadius(i + 1) : 0.0;
     const double tangent = radius * std::tan(0.5 * std::abs(angle));
     const double straight = std::max(0.0, leg.norm() - tangent);
+    const double half_arc = arc ? 0.5 * radius * std::abs(angle) : 0.0;
+    const double leg_end_m = course->length() + straight + half_arc;
+    const double slope = (points[i + 1].rise_m - points[i].rise_m) / (leg_end_m - leg_begin_m);
     const Eigen::Vector2d forward(std::cos(heading), std::sin(heading));
-    course->add({0, straight, at.xy, at.yaw_rad, 0});
+    course->add({0, straight, at.xy, at.yaw_rad, 0, slope});
     at.xy += straight * forward;
-    if (std::abs(angle) < 1e-9) continue;
+    rise_.add(now_.walked_m + leg_end_m, points[i + 1].rise_m);
+    leg_begin_m = leg_end_m;
+    if (!arc) continue;
     const double sign = angle > 0 ? 1.0 : -1.0;
-    course->add({0, radius * std::abs(angle), at.xy, at.yaw_rad, sign / radius});
+    course->add({0, 2 * half_arc, at.xy, at.yaw_rad, sign / radius, slope});
     at.xy =
         points[i + 1].xy + tangent * Eigen::Vector2d(std::cos(heading + angle), std::sin(heading + angle));
     at.yaw_rad += angle;
   }
   course->plan(path_);
-  append(course->duration(), [course](double t) { return course->at(t); });
+  append(course->duration(), [course, begin_m = now_.walked_m](double t) {
+    WalkState state = course->at(t);
+    state.walked_m += begin_m;
+    return state;
+  });
 }
 
 }  // namespace sgraphs::simulate

@@ -44,7 +44,7 @@ TEST(BuildingTest, DoorwayIsOpenAndItsLintelAndSidesAreClosed) {
 TEST(BuildingTest, WallPartsFillAllButTheOpening) {
   const Scene scene = wallWithDoorway();
   double area = 0;
-  for (const WallPart& part : wallParts(scene.walls[0], scene.doorways))
+  for (const WallPart& part : wallParts(scene.walls[0], openingsOf(scene, scene.walls[0])))
     area += (part.end_m - part.begin_m) * (part.z_max_m - part.z_min_m);
   EXPECT_NEAR(area, 4 * 2.8 - 1.0 * 2.1, 1e-9);
 }
@@ -53,7 +53,7 @@ TEST(BuildingTest, OverlappingAndRaisedOpeningsAreCutOnce) {
   Scene scene = wallWithDoorway();
   scene.doorways.push_back({0, {2.0, 0, 0.5}, 1.0, 1.0});  // a hatch beside and over the doorway
   double area = 0;
-  for (const WallPart& part : wallParts(scene.walls[0], scene.doorways))
+  for (const WallPart& part : wallParts(scene.walls[0], openingsOf(scene, scene.walls[0])))
     area += (part.end_m - part.begin_m) * (part.z_max_m - part.z_min_m);
   EXPECT_NEAR(area, 4 * 2.8 - 1.0 * 2.1 - 0.5 * 1.0, 1e-9);
 }

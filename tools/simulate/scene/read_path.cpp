@@ -1,0 +1,73 @@
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "common/base/error.h"
+#include "tools/simulate/scene/read_scene.h"
+
+namespace sgraphs::simulate {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDegree_rad = std::numbers::pi / 180;
+
+std::vector<Waypoint> readWaypoints(const PlanReader& in, double floor_z_m) {
+  std::vector<Waypoint> waypoints;
+  double rise_m = 0;  // holds until the next z
+  const json& list = in.array("waypoints");
+  for (size_t i = 0; i < list.size(); ++i) {
+    const std::string item = "waypoints[" + std::to_string(i) + "]";
+    const json& p = list[i];
+    if (p.is_array() && p.size() == 2 && p[0].is_number() && p[1].is_number()) {
+      waypoints.push_back({{p[0].get<double>(), p[1].get<double>()}, 0, rise_m});
+    } else if (p.is_object()) {
+      const PlanReader waypoint(p, "", "");
+      try {
+        waypoint.allowOnly({"xy", "pause_s", "z"});
+        if (waypoint.has("z")) rise_m = waypoint.number("z") - floor_z_m;
+        waypoints.push_back({waypoint.xy("xy"), waypoint.number("pause_s", 0, 0, 3600), rise_m});
+      } catch (const Error& error) {
+        in.fail(item, std::string("is wrong") + error.what());
+      }
+    } else {
+      in.fail(item, "must be [x, y] or {\"xy\": [x, y], \"pause_s\": 2, \"z\": 0}");
+    }
+  }
+  return waypoints;
+}
+
+void readGait(const PlanReader& in, Gait& gait) {
+  in.allowOnly({"bob_m", "bob_hz", "roll_deg", "roll_hz", "pitch_deg", "pitch_hz"});
+  gait.bob_m = in.number("bob_m", gait.bob_m, 0, 0.1);
+  gait.bob_hz = in.number("bob_hz", gait.bob_hz, 0, 10);
+  gait.roll_rad = in.number("roll_deg", gait.roll_rad / kDegree_rad, 0, 10) * kDegree_rad;
+  gait.roll_hz = in.number("roll_hz", gait.roll_hz, 0, 10);
+  gait.pitch_rad = in.number("pitch_deg", gait.pitch_rad / kDegree_rad, 0, 10) * kDegree_rad;
+  gait.pitch_hz = in.number("pitch_hz", gait.pitch_hz, 0, 10);
+}
+
+}  // namespace
+
+void readPath(const PlanReader& in, Scene& scene) {
+  in.allowOnly({"floor", "waypoints", "start_heading_deg", "start_pause_s", "end_pause_s", "speed_mps",
+                "acceleration_mps2", "yaw_rate_rad_s", "yaw_acceleration_rad_s2", "turn_radius_m",
+                "body_height_m", "clearance_m", "gait"});
+  WalkPath& path = scene.path;
+  scene.path_floor = readFloor(in, scene);
+  path.waypoints = readWaypoints(in, scene.floors_z_m[static_cast<size_t>(scene.path_floor)]);
+  path.start_heading_rad = in.number("start_heading_deg", 0, -360, 360) * kDegree_rad;
+  path.start_pause_s = in.number("start_pause_s", path.start_pause_s, 0, 3600);
+  path.end_pause_s = in.number("end_pause_s", path.end_pause_s, 0, 3600);
+  path.speed_mps = in.number("speed_mps", path.speed_mps, 0.05, 2);
+  path.acceleration_mps2 = in.number("acceleration_mps2", path.acceleration_mps2, 0.05, 3);
+  path.yaw_rate_rad_s = in.number("yaw_rate_rad_s", path.yaw_rate_rad_s, 0.05, 3);
+  path.yaw_acceleration_rad_s2 = in.number("yaw_acceleration_rad_s2", path.yaw_acceleration_rad_s2, 0.05, 10);
+  path.turn_radius_m = in.number("turn_radius_m", path.turn_radius_m, 0.2, 10);
+  path.body_height_m = in.number("body_height_m", path.body_height_m, 0, 5);
+  path.clearance_m = in.number("clearance_m", path.clearance_m, 0.01, 5);
+  if (in.has("gait")) readGait(in.object("gait"), path.gait);
+}
+
+}  // namespace sgraphs::simulate
