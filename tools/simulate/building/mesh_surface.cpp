@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <tuple>
 #include <unordered_map>
@@ -23,12 +24,21 @@ struct CellHash {
   }
 };
 
-// Gives each point the number of the first one within kWeld_m of it. Looked up, never iterated.
+// Gives each point the number of an earlier one within kWeld_m of it, and equal points the same number.
+// Looked up, never iterated.
 class Welder {
  public:
   explicit Welder(const std::vector<Eigen::Vector3d>& points) : points_(points) {}
 
   uint32_t add(uint32_t index) {
+    const Eigen::Vector3d& p = points_[index];
+    const auto [known, fresh] = equal_.try_emplace({p.x(), p.y(), p.z()}, index);
+    if (fresh) known->second = near(index);
+    return known->second;
+  }
+
+ private:
+  uint32_t near(uint32_t index) {
     const Eigen::Vector3d& p = points_[index];
     Cell cell;
     for (int i = 0; i < 3; ++i)
@@ -41,8 +51,8 @@ class Welder {
     return index;
   }
 
- private:
   const std::vector<Eigen::Vector3d>& points_;
+  std::map<std::array<double, 3>, uint32_t> equal_;
   std::unordered_map<Cell, uint32_t, CellHash> cells_;
 };
 

@@ -118,11 +118,16 @@ std::string digestOf(const std::string& text, const TriangleMesh& imported) {
   return digest.hex();
 }
 
+// That of the file, or of the folder of a model.sdf.
+std::string nameOfMesh(const fs::path& path) {
+  return (path.stem() == "model" ? fs::absolute(path).parent_path().filename() : path.stem()).string();
+}
+
 SceneSource openMesh(const std::string& path, const SceneRequest& request) {
   if (request.waypoints.empty())
     throw UsageError("scene '" + path +
                      "' is a mesh: give --waypoints FILE, which holds [[x, y], …] or a plan's path object");
-  json plan{{"scene", fs::path(path).stem().string()}, {"meshes", {{{"path", fs::absolute(path).string()}}}}};
+  json plan{{"scene", nameOfMesh(path)}, {"meshes", {{{"path", fs::absolute(path).string()}}}}};
   setWalk(plan, request.waypoints);
   for (const std::string& assignment : request.overrides) overridePlan(plan, assignment);
   SceneSource source;
