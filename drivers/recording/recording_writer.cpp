@@ -76,8 +76,8 @@ void RecordingWriter::addScan(const LidarScan& scan) {
   }
 }
 
-void RecordingWriter::addOdometry(const BodyOdometry& odometry) {
-  tick(odometry.time);
+void RecordingWriter::addOdometry(const BodyOdometry& odometry, Time arrived) {
+  tick(arrived);
   spot_odometry_t message = toMessage(odometry);
   message.header = header(channels::kSpotOdometry.name, odometry.time);
   write(log_, now_.us, channels::kSpotOdometry, message);

@@ -22,7 +22,9 @@ class RecordingWriter {
 
   void addPacket(const VelodynePacket& packet);
   void addScan(const LidarScan& scan);
-  void addOdometry(const BodyOdometry& odometry);
+  void addOdometry(const BodyOdometry& odometry) { addOdometry(odometry, odometry.time); }
+  // A sample whose own clock is not the host's: it stands in the log where it arrived.
+  void addOdometry(const BodyOdometry& odometry, Time arrived);
   // Writes what is pending, and STREAM_END.
   void finish();
 

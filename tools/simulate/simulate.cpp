@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "common/base/error.h"
 #include "common/base/sha256.h"
@@ -9,7 +10,9 @@
 #include "common/io/tum.h"
 #include "drivers/recording/recording_writer.h"
 #include "tools/simulate/building/building.h"
+#include "tools/simulate/building/mesh_surface.h"
 #include "tools/simulate/scene/scene_file.h"
+#include "tools/simulate/scene/scene_source.h"
 #include "tools/simulate/sensor/legs_odometry.h"
 #include "tools/simulate/sensor/sensor_simulator.h"
 
@@ -19,19 +22,19 @@ namespace {
 constexpr int64_t kPacketsPerBatch = 754;  // about a second
 constexpr int64_t kTruthPeriod_us = 10000;
 
-Session describe(const SimulateOptions& options, const Scene& scene, const std::string& plan_path) {
+Session describe(const SimulateOptions& options, const SceneSource& source) {
   Sha256 digest;
-  digest.add(sha256OfFile(plan_path));
+  digest.add(source.digest);
   digest.add(static_cast<int64_t>(options.seed));
   digest.add(static_cast<int64_t>(options.with_odometry));
   Session session;
   session.config_digest = digest.hex();
   // 60 bits of the digest, and never 0: the same recording has the same session whenever it is made.
   session.id = std::stoll(session.config_digest.substr(0, 15), nullptr, 16) | 1;
-  session.start = scene.start;
+  session.start = source.scene.start;
   session.writer = "sgraphs simulate " SGRAPHS_VERSION;
   session.has_odometry = options.with_odometry;
-  session.T_body_lidar = scene.T_body_lidar;
+  session.T_body_lidar = source.scene.T_body_lidar;
   return session;
 }
 
@@ -61,49 +64,98 @@ double lengthOf(const std::vector<StampedPose>& poses) {
   return length;
 }
 
-// Packets and odometry, merged by time.
-void writeRecording(RecordingWriter& writer, const SensorSimulator& sensor,
-                    const std::vector<BodyOdometry>& odometry, const SimulateOptions& options,
-                    const Progress& progress) {
+// What the sensors say, merged in the order in which it reaches the host.
+class Recorder {
+ public:
+  Recorder(RecordingWriter& writer, const Scene& scene, std::vector<BodyOdometry> odometry, uint64_t seed)
+      : writer_(writer),
+        faults_(scene.faults, seed, scene.start),
+        odometry_(std::move(odometry)),
+        clock_offset_(Duration::fromSeconds(scene.legs.clock_offset_s)) {}
+
+  void add(const SensorPacket& packet) {
+    addOdometryBefore(packet.time);
+    write(faults_.step(packet));
+  }
+
+  void finish() {
+    write(faults_.finish());
+    addOdometryBefore(Time{std::numeric_limits<int64_t>::max()});
+    writer_.finish();
+  }
+
+  int64_t packets() const { return packets_; }
+  const FaultCounts& faults() const { return faults_.counts(); }
+
+ private:
+  void addOdometryBefore(Time time) {
+    for (; next_ < odometry_.size(); ++next_) {
+      const Time arrived = odometry_[next_].time - clock_offset_;
+      if (arrived >= time) return;
+      writer_.addOdometry(odometry_[next_], arrived);
+    }
+  }
+  void write(const std::vector<SensorPacket>& arriving) {
+    for (const SensorPacket& packet : arriving) writer_.addPacket({packet.time, packet.bytes});
+    packets_ += static_cast<int64_t>(arriving.size());
+  }
+
+  RecordingWriter& writer_;
+  FaultInjector faults_;
+  std::vector<BodyOdometry> odometry_;
+  size_t next_ = 0;  // of odometry_
+  Duration clock_offset_;
+  int64_t packets_ = 0;
+};
+
+void record(Recorder& recorder, const SensorSimulator& sensor, int num_threads, const Progress& progress) {
   const int64_t total = sensor.numPackets();
-  auto sample = odometry.begin();
   for (int64_t first = 0; first < total; first += kPacketsPerBatch) {
     const int64_t count = std::min(kPacketsPerBatch, total - first);
-    for (const SensorPacket& packet : sensor.packets(first, count, options.num_threads)) {
-      for (; sample != odometry.end() && sample->time < packet.time; ++sample) writer.addOdometry(*sample);
-      writer.addPacket({packet.time, packet.bytes});
-    }
+    for (const SensorPacket& packet : sensor.packets(first, count, num_threads)) recorder.add(packet);
     const double packet_s = vlp16::kPacketPeriod_us * 1e-6;
     if (progress)
       progress(static_cast<double>(first + count) * packet_s, static_cast<double>(total) * packet_s);
   }
-  for (; sample != odometry.end(); ++sample) writer.addOdometry(*sample);
-  writer.finish();
+  recorder.finish();
+}
+
+std::string describeBuilding(const SceneSource& source) {
+  if (source.imported.triangles.empty()) return source.scene.name;
+  return source.scene.name + " (mesh of " + std::to_string(source.imported.triangles.size()) + " triangles)";
 }
 
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options, const Progress& progress) {
   if (options.num_threads < 1) throw UsageError("--threads must be at least 1");
-  const std::string plan_path = findScene(options.scene);
-  const Scene scene = loadScene(plan_path);
-  const TriangleMesh mesh = buildMesh(scene);
+  const SceneSource source = openScene({options.scene, options.waypoints, options.overrides});
+  const Scene& scene = source.scene;
+  TriangleMesh mesh = buildMesh(scene);
+  append(mesh, source.imported);
   const RayCaster caster(mesh, buildGlass(scene));
   const Trajectory trajectory =
       walkAlong(scene.path, scene.start, scene.floors_z_m[static_cast<size_t>(scene.path_floor)]);
   const SensorSimulator sensor(caster, trajectory, scene.T_body_lidar, scene.sensor, options.seed,
                                People(scene.people, scene.floors_z_m));
   std::vector<BodyOdometry> odometry;
-  if (options.with_odometry) odometry = simulateLegsOdometry(trajectory, {}, options.seed);
+  if (options.with_odometry) odometry = simulateLegsOdometry(trajectory, scene.legs, options.seed);
+  const auto num_odometry = static_cast<int64_t>(odometry.size());
 
   if (!options.truth_dir.empty()) writeTruth(options.truth_dir, scene, mesh, trajectory);
   LogWriter log(options.output);
-  RecordingWriter writer(log, describe(options, scene, plan_path));
-  writeRecording(writer, sensor, odometry, options, progress);
+  RecordingWriter writer(log, describe(options, source));
+  Recorder recorder(writer, scene, std::move(odometry), options.seed);
+  record(recorder, sensor, options.num_threads, progress);
   log.close();
 
-  return {trajectory.duration().seconds(), lengthOf(sampleTruth(trajectory)), sensor.numPackets(),
-          static_cast<int64_t>(odometry.size())};
+  return {trajectory.duration().seconds(),
+          lengthOf(sampleTruth(trajectory)),
+          recorder.packets(),
+          num_odometry,
+          recorder.faults(),
+          describeBuilding(source),
+          source.warnings};
 }
 
 }  // namespace sgraphs::simulate

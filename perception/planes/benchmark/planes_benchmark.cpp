@@ -7,6 +7,7 @@
 
 #include "perception/odometry/odometry.h"
 #include "perception/planes/plane_segmentation.h"
+#include "tools/simulate/scene/find_scene.h"
 #include "tools/simulate/scene/scene_file.h"
 #include "tools/simulate/scene/test_worlds.h"
 

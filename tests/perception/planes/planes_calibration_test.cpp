@@ -9,6 +9,7 @@
 #include "perception/planes/plane_segmentation.h"
 #include "tests/perception/odometry/simulated_walk.h"
 #include "tests/perception/planes/plane_truth.h"
+#include "tools/simulate/scene/find_scene.h"
 #include "tools/simulate/scene/scene_file.h"
 
 namespace sgraphs {

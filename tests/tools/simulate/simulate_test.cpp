@@ -17,6 +17,7 @@
 #include "lcmtypes/convert/convert.h"
 #include "tools/simulate/building/building.h"
 #include "tools/simulate/building/ray_caster.h"
+#include "tools/simulate/scene/find_scene.h"
 #include "tools/simulate/scene/scene_file.h"
 
 namespace sgraphs::simulate {
@@ -43,6 +44,13 @@ SimulateOptions shortRun(const std::string& name) {
   options.output = scratch(name + ".lcmlog");
   return options;
 }
+
+const std::vector<std::string> kAllFaults{"faults.packet_loss=0.05",
+                                          "faults.packet_duplicates=0.05",
+                                          "faults.packet_reorders=0.05",
+                                          "faults.packet_corruption=0.05",
+                                          "faults.silences=[{\"begin_s\": 0.5, \"duration_s\": 0.1}]",
+                                          "faults.clock_jumps=[{\"at_s\": 1, \"by_s\": 2}]"};
 
 TEST(SimulateTest, LogIsTheSameAtAnyNumberOfThreads) {
   SimulateOptions one = shortRun("one"), three = shortRun("three"), other = shortRun("other");
@@ -175,6 +183,65 @@ TEST(SimulateTest, UnwritableOutputIsNamed) {
   SimulateOptions options = shortRun("unwritable");
   options.output = "/nonexistent/folder/run.lcmlog";
   EXPECT_THROW(simulate(options), Error);
+}
+
+// Faults, overrides and a mesh, by the command's own way.
+TEST(SimulateTest, FaultyLogIsTheSameAtAnyNumberOfThreadsAndInOrderOfTime) {
+  SimulateOptions one = shortRun("faults_one"), three = shortRun("faults_three");
+  one.with_odometry = three.with_odometry = true;
+  one.overrides = three.overrides = kAllFaults;
+  three.num_threads = 3;
+  const SimulateResult result = simulate(one);
+  simulate(three);
+  EXPECT_EQ(sha256OfFile(one.output), sha256OfFile(three.output));
+  EXPECT_GT(result.faults.lost, 10);
+  EXPECT_GT(result.faults.duplicated, 10);
+  EXPECT_GT(result.faults.reordered, 10);
+  EXPECT_GT(result.faults.corrupted, 10);
+  EXPECT_GT(result.faults.silenced, 50);
+  LogReader log(one.output);
+  int64_t packets = 0, previous_us = 0;
+  while (const auto event = log.next()) {
+    EXPECT_GE(event->timestamp_us, previous_us);
+    previous_us = event->timestamp_us;
+    if (velodyne_packets_t message{}; event->channel == "VELODYNE_PACKETS" && decode(event->bytes, message))
+      packets += static_cast<int64_t>(fromMessage(message).value().size());
+  }
+  EXPECT_EQ(packets, result.packets);
+}
+
+TEST(SimulateTest, OdometryOfAnotherClockStandsWhereItArrived) {
+  SimulateOptions options = shortRun("offset");
+  options.with_odometry = true;
+  options.overrides = {"legs.clock_offset_s=0.4"};
+  simulate(options);
+  LogReader log(options.output);
+  int64_t samples = 0;
+  while (const auto event = log.next()) {
+    spot_odometry_t message{};
+    if (event->channel != "SPOT_ODOMETRY" || !decode(event->bytes, message)) continue;
+    // Packets of up to 26 ms may stand before it.
+    ASSERT_NEAR(static_cast<double>(message.header.utime - event->timestamp_us), 400000, 30000);
+    ++samples;
+  }
+  EXPECT_GT(samples, 50);
+}
+
+TEST(SimulateTest, MeshIsWalkedThroughAndBecomesTheTruth) {
+  SimulateOptions options = shortRun("of_mesh");
+  TriangleMesh room;
+  room.addBox({3, 2, 1.25}, {6, 4, 2.5}, 0, 50);
+  options.scene = scratch("room.ply");
+  writePly(options.scene, room);
+  options.waypoints = scratch("walk.json");
+  std::ofstream(options.waypoints)
+      << R"({"waypoints": [[2, 2], [2.5, 2]], "start_pause_s": 0, "end_pause_s": 0})";
+  options.truth_dir = scratch("of_mesh_truth");
+  const SimulateResult result = simulate(options);
+  EXPECT_GT(result.packets, 500);
+  EXPECT_EQ(result.building, "simulate_room (mesh of 12 triangles)");
+  EXPECT_NEAR(readTum(options.truth_dir + "/gt.tum").front().pose.translation.z(), 0.52, 0.02);
+  EXPECT_GT(std::filesystem::file_size(options.truth_dir + "/mesh.ply"), 300u);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "tools/simulate/scene/scene_file.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -31,52 +30,7 @@ json parseJson(const std::string& text, const std::string& where) {
   }
 }
 
-// Folders of shipped scenes that exist, in the order in which they are searched.
-std::vector<fs::path> sceneFolders() {
-  std::vector<fs::path> folders;
-  if (const char* chosen = std::getenv("SGRAPHS_SCENES")) {
-    folders.emplace_back(chosen);
-  } else {
-    std::error_code ignored;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    folders.push_back(program.parent_path() / ".." / "share" / "sgraphs" / "scenes");
-    folders.emplace_back(SGRAPHS_SOURCE_SCENES_DIR);
-  }
-  std::erase_if(folders, [](const fs::path& folder) { return !fs::is_directory(folder); });
-  return folders;
-}
-
-std::string knownScenes() {
-  std::vector<std::string> names;
-  for (const fs::path& folder : sceneFolders())
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (fs::exists(entry.path() / "plan.json")) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none is installed (see $SGRAPHS_SCENES)" : text;
-}
-
 }  // namespace
-
-std::string findScene(const std::string& scene) {
-  const fs::path path(scene);
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  for (const char* mesh : {".ply", ".obj", ".stl", ".dae", ".sdf"})
-    if (extension == mesh)
-      throw UsageError("scene '" + scene + "': meshes are not in this version: give a plan.json");
-  if (fs::is_regular_file(path)) return scene;
-  if (fs::is_regular_file(path / "plan.json")) return (path / "plan.json").string();
-  if (scene.find('/') == std::string::npos)
-    for (const fs::path& folder : sceneFolders())
-      if (fs::is_regular_file(folder / scene / "plan.json"))
-        return (folder / scene / "plan.json").lexically_normal().string();
-  throw UsageError("scene '" + scene +
-                   "' is neither a plan.json nor a shipped scene: give a file, or one of " + knownScenes());
-}
 
 Scene parseScene(const std::string& text, const std::string& where) {
   const json plan = parseJson(text, where);

@@ -49,6 +49,7 @@ class DriftingState {
     const double slip = model_.slip_m_per_rad * std::sqrt(std::abs(turned));
     own += slip * Eigen::Vector2d(random_.normal(), random_.normal());
     xy += Eigen::Rotation2Dd(yaw) * own;
+    climbed += (1.0 + scale_sign_ * model_.scale) * (after.translation - before.translation).z();
     yaw += turned * (1.0 + turn_sign_ * model_.turn_scale) + yaw_sign_ * model_.yaw_bias_rad_per_m * walked +
            model_.yaw_walk_rad_per_sqrt_m * std::sqrt(walked) * random_.normal();
     height_error += height_sign_ * model_.height_bias_m_per_m * walked +
@@ -61,7 +62,7 @@ class DriftingState {
   }
 
   Eigen::Vector2d xy = Eigen::Vector2d::Zero();
-  double yaw = 0, height_error = 0, roll_error = 0, pitch_error = 0;
+  double climbed = 0, yaw = 0, height_error = 0, roll_error = 0, pitch_error = 0;
 
  private:
   const LegsOdometryModel& model_;
@@ -76,8 +77,8 @@ std::vector<BodyOdometry> simulateLegsOdometry(const Trajectory& trajectory, con
   RandomStream random(seed, kStream);
   DriftingState state(model, random);
   std::vector<BodyOdometry> samples;
-  const SE3 first = trajectory.poseAt(trajectory.start());
-  SE3 before = first;
+  const Duration offset = Duration::fromSeconds(model.clock_offset_s);
+  SE3 before = trajectory.poseAt(trajectory.start());
   for (int64_t k = 0;; ++k) {
     const Time time = trajectory.start() + Duration::fromSeconds(static_cast<double>(k) / model.rate_hz);
     if (time > trajectory.end()) break;
@@ -90,13 +91,12 @@ std::vector<BodyOdometry> simulateLegsOdometry(const Trajectory& trajectory, con
     const Attitude attitude(truth.rotation);
     const auto shake = [&](double sigma) { return white * sigma * random.normal(); };
     const double turn = model.white_rotation_rad, shift = model.white_position_m;
-    BodyOdometry sample{time, {}};
+    BodyOdometry sample{time + offset, {}};
     sample.T_odom_body.rotation =
         rotationOf(attitude.roll + state.roll_error + shake(turn),
                    attitude.pitch + state.pitch_error + shake(turn), state.yaw + shake(turn));
-    sample.T_odom_body.translation = {
-        state.xy.x() + shake(shift), state.xy.y() + shake(shift),
-        truth.translation.z() - first.translation.z() + state.height_error + shake(shift)};
+    sample.T_odom_body.translation = {state.xy.x() + shake(shift), state.xy.y() + shake(shift),
+                                      state.climbed + state.height_error + shake(shift)};
     samples.push_back(sample);
     before = truth;
   }

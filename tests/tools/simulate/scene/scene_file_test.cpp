@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
 #include "tools/simulate/building/building.h"
+#include "tools/simulate/scene/find_scene.h"
 
 namespace sgraphs::simulate {
 namespace {
@@ -177,44 +176,6 @@ TEST(SceneFileTest, WrittenPlanIsReadBack) {
   EXPECT_EQ(buildMesh(again).vertices, buildMesh(scene).vertices);
   EXPECT_EQ(again.rooms.size(), scene.rooms.size());
   EXPECT_LT(se3Log(again.T_body_lidar.inverse() * scene.T_body_lidar).norm(), 1e-9);
-}
-
-TEST(FindSceneTest, ShippedScenesAreFoundByNameAndLoad) {
-  for (const char* name : {"small_office", "two_rooms"}) {
-    const Scene scene = loadScene(findScene(name));
-    EXPECT_EQ(scene.name, name);
-    EXPECT_GT(se3Log(scene.T_body_lidar).norm(), 0.1);
-    const double seconds = walkAlong(scene.path, scene.start, 0).duration().seconds();
-    EXPECT_LT(seconds, std::string(name) == "two_rooms" ? 25 : 80);
-  }
-}
-
-TEST(FindSceneTest, EnvironmentOverridesTheShippedScenes) {
-  const std::string folder = testing::TempDir() + "/scenes";
-  std::filesystem::create_directories(folder + "/mine");
-  std::ofstream(folder + "/mine/plan.json") << goodPlan().dump();
-  ASSERT_EQ(setenv("SGRAPHS_SCENES", folder.c_str(), 1), 0);
-  EXPECT_EQ(loadScene(findScene("mine")).name, "mine");
-  EXPECT_THROW(findScene("small_office"), UsageError);
-  unsetenv("SGRAPHS_SCENES");
-  EXPECT_EQ(findScene(folder + "/mine"), folder + "/mine/plan.json");
-}
-
-TEST(FindSceneTest, UnknownScenesAndMeshesAreUsageErrors) {
-  try {
-    findScene("nowhere");
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("nowhere"), HasSubstr("small_office, two_rooms")));
-  }
-  for (const char* mesh : {"house.ply", "office.DAE", "a/b/model.sdf"}) {
-    try {
-      findScene(mesh);
-      FAIL();
-    } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), AllOf(HasSubstr(mesh), HasSubstr("give a plan.json")));
-    }
-  }
 }
 
 }  // namespace

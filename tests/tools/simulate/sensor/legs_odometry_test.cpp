@@ -105,5 +105,30 @@ TEST(LegsOdometryTest, SeedsDecideAndRepeat) {
   EXPECT_NE(a.back().T_odom_body.translation, c.back().T_odom_body.translation);
 }
 
+TEST(LegsOdometryTest, ClockOffsetMovesTheStampsAndNothingElse) {
+  const Trajectory walk = longWalk();
+  LegsOdometryModel late;
+  late.clock_offset_s = -0.35;
+  const auto a = simulateLegsOdometry(walk, {}, 7), b = simulateLegsOdometry(walk, late, 7);
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ((b[i].time - a[i].time).us, -350000);
+    ASSERT_EQ(a[i].T_odom_body.translation, b[i].T_odom_body.translation);
+  }
+}
+
+TEST(LegsOdometryTest, ClimbsWithTheSlopeAndMisjudgesItByTheScale) {
+  // 3 m up over 6 m.
+  const Trajectory climb(Time{0}, Duration{10000000}, [](double s) {
+    return SE3(Eigen::Quaterniond::Identity(), {0.6 * s, 0, 0.3 * s});
+  });
+  LegsOdometryModel exact{50, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0};
+  EXPECT_NEAR(simulateLegsOdometry(climb, exact, 1).back().T_odom_body.translation.z(), 3.0, 1e-6);
+  exact.scale = 0.02;
+  const Eigen::Vector3d end = simulateLegsOdometry(climb, exact, 1).back().T_odom_body.translation;
+  EXPECT_NEAR(std::abs(end.z() - 3.0), 0.06, 1e-6);
+  EXPECT_NEAR(end.z() / 3.0, end.x() / 6.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace sgraphs::simulate

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "tools/simulate/building/triangle_mesh.h"
+
+namespace sgraphs::simulate {
+
+inline std::string writeMeshFile(const std::string& name, const std::string& text) {
+  const std::string path = testing::TempDir() + "/" + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+// Upright boxes as an OBJ or an ASCII STL.
+inline std::string asObj(const TriangleMesh& mesh) {
+  std::string text = "# written by a test\n";
+  for (const auto& v : mesh.vertices)
+    text += "v " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
+  for (const auto& t : mesh.triangles) {
+    text += "f";
+    for (const uint32_t i : t) text += " " + std::to_string(i + 1);
+    text += "\n";
+  }
+  return text;
+}
+
+inline std::string asStl(const TriangleMesh& mesh) {
+  std::string text = "solid test\n";
+  for (const auto& t : mesh.triangles) {
+    text += "facet normal 0 0 1\nouter loop\n";
+    for (const uint32_t i : t) {
+      const auto& v = mesh.vertices[i];
+      text += "vertex " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) +
+              "\n";
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid test\n";
+}
+
+}  // namespace sgraphs::simulate
