@@ -208,23 +208,29 @@ Scene roomBehindGlass() {
 
 TEST(GlassTest, ReturnsComeNearNormalIncidenceOnlyAndWeak) {
   const SimulatedWorld world(roomBehindGlass());
+  const Eigen::Vector3d eye(3, 2, 1.4);
   int normal = 0, normal_seen = 0, oblique = 0, oblique_seen = 0;
-  for (uint64_t seed = 0; seed < 5; ++seed)
-    for (const LidarPoint& p :
-         simulateScan(world, {Eigen::Quaterniond::Identity(), {3, 2, 1.4}}, SensorModel::noiseFree(), seed)
-             .points) {
-      const Eigen::Vector3d end = p.position_lidar.cast<double>() + Eigen::Vector3d(3, 2, 1.4);
-      const Eigen::Vector3d ray = (end - Eigen::Vector3d(3, 2, 1.4)).normalized();
-      const bool on_pane = std::abs(end.x() - 6)<0.002, beyond = end.x()> 6.01;
-      if (!on_pane && !beyond) continue;
-      const double incidence_deg = std::acos(ray.x()) / kDegree;
-      (incidence_deg < 3 ? normal : oblique) += incidence_deg < 3 || incidence_deg > 12.2;
-      (incidence_deg < 3 ? normal_seen : oblique_seen) +=
-          on_pane && (incidence_deg < 3 || incidence_deg > 12.2);
+  for (uint64_t seed = 0; seed < 5; ++seed) {
+    const auto scan =
+        simulateScan(world, {Eigen::Quaterniond::Identity(), eye}, SensorModel::noiseFree(), seed);
+    for (const LidarPoint& p : scan.points) {
+      const Eigen::Vector3d way = p.position_lidar.cast<double>(), at = eye + way;
+      const bool on_other = at.y() < 0.01 || at.y() > 3.99 || at.z() < 0.01 || at.z() > 2.79;
+      const bool on_pane = std::abs(at.x() - 6) < 0.002 && !on_other;
+      if (!on_pane && way.x() < 3.01) continue;
       if (on_pane) {
         EXPECT_LE(p.reflectivity, 5);
       }
+      const double incidence_deg = std::acos(way.normalized().x()) / kDegree;
+      if (incidence_deg < 3) {
+        ++normal;
+        normal_seen += on_pane;
+      } else if (incidence_deg > 12.2) {
+        ++oblique;
+        oblique_seen += on_pane;
+      }
     }
+  }
   ASSERT_GT(normal, 150);
   ASSERT_GT(oblique, 3000);
   EXPECT_EQ(oblique_seen, 0);
