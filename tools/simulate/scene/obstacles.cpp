@@ -88,7 +88,7 @@ bool Obstacles::inTheWay(const Solid& solid, const Foothold& at) const {
   if (solid.flight < 0) return true;
   // A flight is no obstacle to a body that climbs it.
   const Stairs& stairs = flights_[static_cast<size_t>(solid.flight)];
-  const auto slope_z = slopeHeight(stairs, at.xy, clearance_m_);
+  const auto slope_z = slopeHeight(stairs, at.xy, clearance_m_ + kThreshold_m);
   return !slope_z || std::abs(*slope_z - at.z_m) > riserOf(stairs) + kThreshold_m;
 }
 

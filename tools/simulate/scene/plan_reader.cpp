@@ -44,10 +44,15 @@ void PlanReader::fail(const std::string& key, const std::string& what) const {
 void PlanReader::refuse(const std::vector<std::string>& known, size_t max_distance) const {
   for (const auto& [key, value] : object_.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const auto nearest = std::min_element(
-        known.begin(), known.end(),
-        [&k = key](const auto& a, const auto& b) { return editDistance(k, a) < editDistance(k, b); });
-    if (editDistance(key, *nearest) <= max_distance)
+    // Who leaves out the unit means the key that goes on where his ends.
+    const auto distance = [&k = key, max_distance](const std::string& candidate) {
+      const size_t edits = editDistance(k, candidate);
+      return edits > max_distance || !candidate.starts_with(k) ? edits : size_t{0};
+    };
+    const auto nearest =
+        std::min_element(known.begin(), known.end(),
+                         [&distance](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    if (distance(*nearest) <= max_distance)
       fail(key, "is not a key of a plan: did you mean '" + *nearest + "'?");
   }
 }

@@ -25,6 +25,22 @@ Scene makeCorridor(double length_m, double width_m, double height_m) {
   return scene;
 }
 
+Scene makeTwoStoreys() {
+  Scene scene = makeBoxRoom(9, 5);
+  scene.name = "two storeys";
+  scene.floors_z_m = {0, 3};
+  const std::vector<Wall> ground = scene.walls;
+  for (Wall wall : ground) {
+    wall.z_min_m += 3;
+    wall.z_max_m += 3;
+    scene.walls.push_back(wall);
+  }
+  scene.stairs.push_back({{1.5, 1}, {6.3, 1}, 1.2, 0, 3, 16});
+  scene.path.waypoints = {{{0.8, 3.8}, 0},  {{0.8, 1}, 0},    {{1.5, 1}, 0, 0},
+                          {{6.3, 1}, 0, 3}, {{7.8, 1}, 0, 3}, {{7.8, 3.8}, 0, 3}};
+  return scene;
+}
+
 LidarScan simulateScan(const SimulatedWorld& world, const SE3& T_building_lidar, const SensorModel& model,
                        uint64_t seed) {
   return simulateMovingScan(world, T_building_lidar, Vector6d::Zero(), model, seed);

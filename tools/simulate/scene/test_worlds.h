@@ -14,6 +14,10 @@ Scene makeBoxRoom(double size_x_m, double size_y_m, double height_m = 2.8);
 // A corridor along x, closed at both ends: inner faces at y = 0 and width, x = 0 and length.
 Scene makeCorridor(double length_m, double width_m = 2.0, double height_m = 2.8);
 
+// A hall of 9 x 5 m on two storeys, floors at z = 0 and 3, walls 2.8 m high, with a flight of 16 steps along
+// x from (1.5, 1) to (6.3, 1), 1.2 m wide, and a walk up.
+Scene makeTwoStoreys();
+
 // A building ready to be measured; moves, but does not copy.
 struct SimulatedWorld {
   explicit SimulatedWorld(const Scene& from)

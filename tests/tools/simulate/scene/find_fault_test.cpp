@@ -1,11 +1,17 @@
 #include "tools/simulate/scene/find_fault.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "tools/simulate/scene/test_worlds.h"
 
 namespace sgraphs::simulate {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 TEST(FindFaultTest, GoodSceneHasNone) {
   EXPECT_EQ(findFault(makeBoxRoom(4, 4)), std::nullopt);
@@ -36,6 +42,57 @@ TEST(FindFaultTest, RoundedCornerThatBrushesFurnitureIsFound) {
   ASSERT_TRUE(fault.has_value());
   EXPECT_NE(fault->find("rounds corners"), std::string::npos) << *fault;
   EXPECT_NE(fault->find("'lamp'"), std::string::npos) << *fault;
+}
+
+// What is said of the scene; one line, or nothing.
+std::string fault(const Scene& scene) {
+  const std::string text = findFault(scene).value_or("");
+  EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  return text;
+}
+
+TEST(FindFaultTest, EachBadItemIsNamedInOneLine) {
+  const Scene good = makeBoxRoom(6, 4);
+  Scene scene = good;
+  scene.windows.push_back({{3, 2, 1}, 1, 1, false});
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("windows[0]"), HasSubstr("(3, 2)"), HasSubstr("not on a wall")));
+  scene.windows[0] = {{3, -0.05, 2.5}, 1, 1, false};
+  EXPECT_THAT(fault(scene), HasSubstr("windows[0]"));
+  scene.windows[0].height_m = 0;
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("windows[0]"), HasSubstr("positive")));
+  scene.windows[0] = {{3, -0.05, 1}, 1, 1, true};
+  EXPECT_EQ(fault(scene), "");
+
+  scene = good;
+  scene.columns.push_back({"", {1, 1}, 0, 0, 2});
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("columns[0]"), HasSubstr("radius")));
+  scene.columns[0] = {"", {1, 1}, 0.2, 2, 2};
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("columns[0]"), HasSubstr("no height")));
+
+  scene = good;
+  scene.stairs.push_back({{1, 1}, {1, 1}, 1, 0, 3, 17});
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("stairs[0]"), HasSubstr("no length")));
+  scene.stairs[0] = {{1, 1}, {4, 1}, 1, 0, 3, 0};
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("stairs[0]"), HasSubstr("0 steps")));
+  scene.stairs[0] = {{1, 1}, {4, 1}, 0, 0, 3, 9};
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("stairs[0]"), HasSubstr("width")));
+  scene.stairs[0] = {{1, 1}, {4, 1}, 1, 3, 0, 9};
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("stairs[0]"), HasSubstr("no height")));
+
+  scene = good;
+  scene.people.emplace_back();
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("people[0]"), HasSubstr("no waypoints")));
+  scene.people[0].waypoints = {{1, 1}, {std::nan(""), 1}};
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("people[0].waypoints[1]"), HasSubstr("finite")));
+  scene.people[0].waypoints = {{1, 1}, {1, 1}};
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("people[0].waypoints[1]"), HasSubstr("same")));
+  scene.people[0].waypoints = {{1, 1}, {9, 1}};  // through walls, as people in a plan may
+  EXPECT_EQ(fault(scene), "");
+  scene.people[0].speed_mps = 0;
+  EXPECT_THAT(fault(scene), AllOf(HasSubstr("people[0]"), HasSubstr("speed")));
+
+  scene = {};
+  EXPECT_THAT(fault(scene), HasSubstr("neither a wall"));
 }
 
 }  // namespace

@@ -178,5 +178,109 @@ TEST(SceneFileTest, WrittenPlanIsReadBack) {
   EXPECT_LT(se3Log(again.T_body_lidar.inverse() * scene.T_body_lidar).norm(), 1e-9);
 }
 
+// The good plan with one of everything.
+json fullPlan() {
+  json plan = goodPlan();
+  plan["floors"] = {0.0, 3.0};
+  plan["walls"][4]["glass"] = true;
+  plan["windows"] = json::parse(R"([{"xyz": [1.5, 0, 0.9], "width": 1.0, "height": 1.2, "glazed": true}])");
+  plan["columns"] = json::parse(R"([{"name": "c", "center": [1, 3.3], "radius": 0.2, "z": [0, 2.5]}])");
+  plan["stairs"] =
+      json::parse(R"([{"foot": [3.6, 0.6], "top": [5.4, 0.6], "width": 0.8, "z": [0, 1.2], "steps": 6}])");
+  plan["people"] =
+      json::parse(R"([{"floor": 0, "waypoints": [[1, 1], [2, 1]], "speed_mps": 0.9, "start_s": 4}])");
+  plan["meshes"] = json::parse(
+      R"([{"path": "a.obj", "scale": 0.001, "T_building_mesh": {"xyz": [1, 2, 3], "rpy_deg": [90, 0, 0]}}])");
+  plan["legs"] = json::parse(R"({"scale": 0.02, "clock_offset_s": -0.1})");
+  plan["faults"] = json::parse(R"({"packet_loss": 0.1, "silences": [{"begin_s": 5, "duration_s": 1}],
+      "clock_jumps": [{"at_s": 7, "by_s": -2}]})");
+  return plan;
+}
+
+TEST(SceneFileTest, ReadsEveryItem) {
+  const Scene scene = parseScene(fullPlan().dump(), "plan.json");
+  EXPECT_TRUE(scene.walls[4].glass);
+  EXPECT_FALSE(scene.walls[3].glass);
+  EXPECT_EQ(scene.windows.at(0).xyz, Eigen::Vector3d(1.5, 0, 0.9));
+  EXPECT_EQ(scene.windows[0].height_m, 1.2);
+  EXPECT_TRUE(scene.windows[0].glazed);
+  EXPECT_EQ(scene.columns.at(0).radius_m, 0.2);
+  EXPECT_EQ(scene.columns[0].z_max_m, 2.5);
+  EXPECT_EQ(scene.stairs.at(0).top, Eigen::Vector2d(5.4, 0.6));
+  EXPECT_EQ(scene.stairs[0].steps, 6);
+  EXPECT_EQ(scene.people.at(0).waypoints.size(), 2u);
+  EXPECT_EQ(scene.people[0].speed_mps, 0.9);
+  EXPECT_EQ(scene.people[0].start_s, 4);
+  EXPECT_EQ(scene.meshes.at(0).path, "a.obj");
+  EXPECT_EQ(scene.meshes[0].scale, 0.001);
+  EXPECT_EQ(scene.meshes[0].T_building_mesh.translation, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(scene.legs.scale, 0.02);
+  EXPECT_EQ(scene.legs.clock_offset_s, -0.1);
+  EXPECT_EQ(scene.legs.turn_scale, LegsOdometryModel().turn_scale);
+  EXPECT_EQ(scene.faults.packet_loss, 0.1);
+  EXPECT_EQ(scene.faults.silences.at(0).begin_s, 5);
+  EXPECT_EQ(scene.faults.clock_jumps.at(0).by_s, -2);
+}
+
+TEST(SceneFileTest, WaypointHeightHoldsForThoseThatFollow) {
+  json plan = goodPlan();
+  plan["floors"] = {0.0, 0.25, 0.5};
+  plan["path"]["floor"] = 1;
+  plan["path"]["waypoints"] = json::parse(
+      R"([[1, 2], {"xy": [1.5, 2], "z": 0.25}, {"xy": [4, 2], "z": 0.5}, [5, 2], {"xy": [5, 3], "z": 0.25}])");
+  const Scene scene = parseScene(plan.dump(), "plan.json");
+  std::vector<double> rises;
+  for (const Waypoint& waypoint : scene.path.waypoints) rises.push_back(waypoint.rise_m);
+  EXPECT_THAT(rises, testing::ElementsAre(0, 0, 0.25, 0.25, 0));
+}
+
+TEST(SceneFileTest, EachBadMemberOfTheNewItemsIsNamed) {
+  const auto with = [](const char* pointer, const json& value) {
+    json plan = fullPlan();
+    plan[json::json_pointer(pointer)] = value;
+    return complaint(plan);
+  };
+  EXPECT_EQ(complaint(fullPlan()), "");
+  EXPECT_THAT(with("/walls/0/glass", 1), AllOf(HasSubstr("walls[0].glass"), HasSubstr("true or false")));
+  EXPECT_THAT(with("/walls/0/glas", true), AllOf(HasSubstr("walls[0].glas"), HasSubstr("'glass'")));
+  EXPECT_THAT(with("/windows/0/xyz", {1, 2, 0}), AllOf(HasSubstr("windows[0]"), HasSubstr("not on a wall")));
+  EXPECT_THAT(with("/columns/0/radious", 1), AllOf(HasSubstr("columns[0].radious"), HasSubstr("'radius'")));
+  EXPECT_THAT(with("/columns/0/radius", -1), AllOf(HasSubstr("columns[0]"), HasSubstr("radius")));
+  EXPECT_THAT(with("/stairs/0/steps", 0), AllOf(HasSubstr("stairs[0]"), HasSubstr("steps")));
+  EXPECT_THAT(with("/stairs/0/steps", 2.5), AllOf(HasSubstr("stairs[0].steps"), HasSubstr("whole")));
+  EXPECT_THAT(with("/stairs/0/top", {3.6, 0.6}), AllOf(HasSubstr("stairs[0]"), HasSubstr("no length")));
+  EXPECT_THAT(with("/people/0/waypoints", json::array()),
+              AllOf(HasSubstr("people[0]"), HasSubstr("waypoints")));
+  EXPECT_THAT(with("/people/0/floor", 2), HasSubstr("people[0].floor"));
+  EXPECT_THAT(with("/people/0/speed", 2), AllOf(HasSubstr("people[0].speed"), HasSubstr("'speed_mps'")));
+  EXPECT_THAT(with("/meshes/0/path", ""), HasSubstr("meshes[0].path"));
+  EXPECT_THAT(with("/meshes/0/scale", 0), AllOf(HasSubstr("meshes[0].scale"), HasSubstr("between")));
+  EXPECT_THAT(with("/legs/scale", 3), AllOf(HasSubstr("legs.scale"), HasSubstr("between")));
+  EXPECT_THAT(with("/legs/yaw_bias", 0),
+              AllOf(HasSubstr("legs.yaw_bias"), HasSubstr("'yaw_bias_rad_per_m'")));
+  EXPECT_THAT(with("/faults/packet_loss", 1.5), AllOf(HasSubstr("faults.packet_loss"), HasSubstr("between")));
+  EXPECT_THAT(with("/faults/packet_los", 0),
+              AllOf(HasSubstr("faults.packet_los"), HasSubstr("'packet_loss'")));
+  EXPECT_THAT(with("/faults/silences/0", {{"begin_s", 1}}), HasSubstr("faults.silences[0] needs"));
+  EXPECT_THAT(with("/path/waypoints/1/z", "high"), AllOf(HasSubstr("waypoints[1]"), HasSubstr("z must be")));
+}
+
+TEST(SceneFileTest, WrittenPlanHoldsTheBuildingAndNothingOfTheRun) {
+  const Scene scene = parseScene(fullPlan().dump(), "plan.json");
+  const std::string path = testing::TempDir() + "/written_full_plan.json";
+  writePlan(path, scene);
+  std::ifstream in(path);
+  json plan = json::parse(in);
+  for (const char* key : {"path", "people", "faults", "legs", "sensor", "meshes", "slabs"})
+    EXPECT_FALSE(plan.contains(key)) << key;
+  plan["path"] = fullPlan()["path"];
+  plan["path"]["waypoints"] = json::parse("[[1, 2]]");
+  const Scene again = parseScene(plan.dump(), path);
+  EXPECT_EQ(buildMesh(again).vertices, buildMesh(scene).vertices);
+  EXPECT_EQ(buildGlass(again).vertices, buildGlass(scene).vertices);
+  EXPECT_EQ(buildGlass(again).triangles.size(), 8u);  // window, and a wall around its doorway
+  EXPECT_EQ(again.columns[0].name, "c");
+}
+
 }  // namespace
 }  // namespace sgraphs::simulate

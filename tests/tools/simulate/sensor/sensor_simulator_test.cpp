@@ -197,5 +197,114 @@ TEST(SensorModelTest, RevolutionOfAMovingSensorIsDeskewedByItsTwist) {
   EXPECT_LT(worst, 0.0011);
 }
 
+// A room of 10 x 4 m whose half beyond x = 6 lies behind glass.
+Scene roomBehindGlass() {
+  Scene scene = makeBoxRoom(10, 4);
+  Wall pane{{6, 0}, {6, 4}, 0.1, 0, 2.8};
+  pane.glass = true;
+  scene.walls.push_back(pane);
+  return scene;
+}
+
+TEST(GlassTest, ReturnsComeNearNormalIncidenceOnlyAndWeak) {
+  const SimulatedWorld world(roomBehindGlass());
+  const Eigen::Vector3d eye(3, 2, 1.4);
+  int normal = 0, normal_seen = 0, oblique = 0, oblique_seen = 0;
+  for (uint64_t seed = 0; seed < 5; ++seed) {
+    const auto scan =
+        simulateScan(world, {Eigen::Quaterniond::Identity(), eye}, SensorModel::noiseFree(), seed);
+    for (const LidarPoint& p : scan.points) {
+      const Eigen::Vector3d way = p.position_lidar.cast<double>(), at = eye + way;
+      const bool on_other = at.y() < 0.01 || at.y() > 3.99 || at.z() < 0.01 || at.z() > 2.79;
+      const bool on_pane = std::abs(at.x() - 6) < 0.002 && !on_other;
+      if (!on_pane && way.x() < 3.01) continue;
+      if (on_pane) {
+        EXPECT_LE(p.reflectivity, 5);
+      }
+      const double incidence_deg = std::acos(way.normalized().x()) / kDegree;
+      if (incidence_deg < 3) {
+        ++normal;
+        normal_seen += on_pane;
+      } else if (incidence_deg > 12.2) {
+        ++oblique;
+        oblique_seen += on_pane;
+      }
+    }
+  }
+  ASSERT_GT(normal, 150);
+  ASSERT_GT(oblique, 3000);
+  EXPECT_EQ(oblique_seen, 0);
+  // 0.8 (1 - (i / 12 deg)^2), i up to 3 deg.
+  EXPECT_NEAR(normal_seen / static_cast<double>(normal), 0.78, 0.12);
+}
+
+TEST(GlassTest, WhatGoesThroughMeasuresTheWallBehindWithLessLight) {
+  const SimulatedWorld behind(roomBehindGlass()), open(makeBoxRoom(10, 4));
+  const SE3 T(Eigen::Quaterniond::Identity(), {3, 2, 1.4});
+  const auto through = simulateScan(behind, T), free = simulateScan(open, T);
+  size_t j = 0, same = 0, dimmer = 0;
+  for (const LidarPoint& p : through.points) {
+    while (j < free.points.size() && (free.points[j].column != p.column || free.points[j].ring != p.ring))
+      ++j;
+    ASSERT_LT(j, free.points.size());
+    const LidarPoint& q = free.points[j];
+    if (p.position_lidar.x() <= 3.01f) continue;  // this side of the pane, or on it
+    EXPECT_LT((p.position_lidar - q.position_lidar).norm(), 1e-6);
+    ++same;
+    dimmer += p.reflectivity < q.reflectivity;
+  }
+  EXPECT_GT(same, 1000u);
+  EXPECT_EQ(dimmer, same);
+}
+
+TEST(GlassTest, FlatRaysAreThrownAwayAndPacketsAreReproducible) {
+  // Along a pane at 0.2 m: beyond 80 degrees of incidence nothing comes through.
+  Scene scene = makeBoxRoom(20, 4);
+  Wall pane{{0, 2.2}, {20, 2.2}, 0.1, 0, 2.8};
+  pane.glass = true;
+  scene.walls.push_back(pane);
+  const SimulatedWorld world(scene);
+  const SE3 T(Eigen::Quaterniond::Identity(), {2, 2, 1.4});
+  int through = 0;
+  for (const LidarPoint& p : simulateScan(world, T).points) {
+    const Eigen::Vector3f u = p.position_lidar.normalized();
+    if (p.position_lidar.y() < 0.21f) continue;
+    EXPECT_LT(std::acos(u.y()) / kDegree, 80);
+    ++through;
+  }
+  EXPECT_GT(through, 1000);
+  const auto still = Trajectory::still(world.scene.start, Duration{200000}, T);
+  const SensorSimulator one(world.caster, still, SE3(), {}, 4), two(world.caster, still, SE3(), {}, 4);
+  const auto a = one.packets(0, 60, 1), b = two.packets(0, 60, 3);
+  for (size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].bytes, b[i].bytes);
+}
+
+TEST(PeopleInTheScanTest, SensorSeesThemWhereTheyAreAtTheFiring) {
+  const SimulatedWorld world(makeBoxRoom(10, 8));
+  Person person;
+  person.waypoints = {{5, 1}, {5, 7}};
+  person.speed_mps = 2.0;
+  const SE3 T(Eigen::Quaterniond::Identity(), {1, 4, 1.2});
+  const auto still = Trajectory::still(world.scene.start, Duration{3000000}, T);
+  const SensorSimulator sensor(world.caster, still, SE3(), SensorModel::noiseFree(), 0,
+                               People({person}, world.scene.floors_z_m));
+  int on_person = 0;
+  for (const int64_t k : {0, 7, 14, 21}) {
+    const LidarScan scan = sensor.scan(k);
+    for (const LidarPoint& p : scan.points) {
+      const Eigen::Vector3d at = T * Eigen::Vector3d(p.position_lidar.cast<double>());
+      if (world.caster.distanceToSurface(at) < 0.01) continue;
+      const double seconds = (scan.end + Duration{p.time_us} - world.scene.start).seconds();
+      const double z = at.z(), height = person.height_m;
+      // The trunk, which is round its place at that instant.
+      if (z < 0.48 * height || z > 0.85 * height) continue;
+      const Eigen::Vector2d center(5, 1 + 2.0 * seconds);
+      EXPECT_NEAR((at.head<2>() - center).norm(), person.radius_m, 0.0015) << k;
+      ++on_person;
+    }
+  }
+  EXPECT_GT(on_person, 100);
+}
+
 }  // namespace
 }  // namespace sgraphs::simulate

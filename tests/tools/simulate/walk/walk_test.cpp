@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tools/simulate/scene/test_worlds.h"
 #include "tools/simulate/walk/walk_plan.h"
 
 namespace sgraphs::simulate {
@@ -129,6 +130,111 @@ TEST(WalkTest, PausesAreStoodOut) {
   const WalkPlan without(path);
   // The pause, and the time lost in stopping and starting: half of the speed over the ramps.
   EXPECT_NEAR(with.duration() - without.duration(), 4.0 + path.speed_mps / path.acceleration_mps2, 0.05);
+}
+
+// Two legs on the flat, a slope of 0.5 over 6 m between, and a way down again.
+WalkPath hill() {
+  WalkPath path;
+  path.gait = {0, 0, 0, 0, 0, 0};
+  path.waypoints = {{{0, 0}, 0},     {{4, 0}, 0, 0},    {{10, 0}, 0, 3},
+                    {{14, 0}, 0, 3}, {{14, 4}, 0.5, 3}, {{14, 10}, 0, 0.5}};
+  return path;
+}
+
+TEST(WalkTest, HeightRisesEvenlyWithTheDistanceAndTheBodyPitchesAlong) {
+  const WalkPath path = hill();
+  const Trajectory walk = walkAlong(path, Time{0}, 1.0);
+  int flat = 0, slope = 0, down = 0;
+  for (double t = 0; t < walk.duration().seconds(); t += 0.01) {
+    const SE3 T = walk.poseAtOffset(t);
+    const double x = T.translation.x(), y = T.translation.y(),
+                 z = T.translation.z() - 1.0 - path.body_height_m;
+    const Eigen::Vector3d forward = T.matrix3().col(0);
+    if (x < 3 || (x > 11 && y < 2.5)) {
+      EXPECT_NEAR(z, x < 3 ? 0 : 3, 1e-9) << t;
+      EXPECT_NEAR(forward.z(), 0, 1e-9) << t;
+      ++flat;
+    } else if (x > 5 && x < 9) {
+      EXPECT_NEAR(z, 0.5 * (x - 4), 1e-9) << t;
+      EXPECT_NEAR(forward.z() / forward.x(), 0.5, 1e-9) << t;
+      ++slope;
+    } else if (y > 5 && y < 9) {
+      EXPECT_NEAR(z, 3 - 2.5 / 6 * (y - 4), 1e-9) << t;
+      EXPECT_NEAR(forward.z() / forward.y(), -2.5 / 6, 1e-9) << t;
+      ++down;
+    }
+  }
+  EXPECT_GT(std::min({flat, slope, down}), 300);
+  EXPECT_NEAR(walk.poseAt(walk.end()).translation.z(), 1.0 + path.body_height_m + 0.5, 1e-9);
+}
+
+TEST(WalkTest, SlopesAreWalkedAtTheSpeedAlongThem) {
+  const WalkPath path = hill();
+  const Trajectory walk = walkAlong(path, Time{0}, 0);
+  double fastest = 0;
+  for (double t = 0.01; t < walk.duration().seconds(); t += 0.01) {
+    const double speed =
+        (walk.poseAtOffset(t).translation - walk.poseAtOffset(t - 0.01).translation).norm() / 0.01;
+    EXPECT_LE(speed, path.speed_mps * 1.001) << t;
+    const double x = walk.poseAtOffset(t).translation.x();
+    if (x > 5 && x < 9) fastest = std::max(fastest, speed);
+  }
+  EXPECT_GT(fastest, 0.99 * path.speed_mps);
+}
+
+TEST(WalkTest, RiseAndPitchAreSmooth) {
+  const Trajectory walk = walkAlong(hill(), Time{0}, 0);
+  const double h = 1e-3;
+  const auto pitch = [&](double t) { return std::asin(walk.poseAtOffset(t).matrix3()(2, 0)); };
+  const auto second = [&](const auto& f, double t) { return (f(t + h) - 2 * f(t) + f(t - h)) / (h * h); };
+  const auto height = [&](double t) { return walk.poseAtOffset(t).translation.z(); };
+  double steepest_turn = 0;
+  for (int knot = 1; knot * kKnot_s + 0.01 < walk.duration().seconds(); ++knot) {
+    const double t = knot * kKnot_s;
+    EXPECT_LT(std::abs(second(height, t + 1e-3) - second(height, t - 1e-3)), 0.1) << t;
+    EXPECT_LT(std::abs(second(pitch, t + 1e-3) - second(pitch, t - 1e-3)), 0.1) << t;
+    steepest_turn = std::max(steepest_turn, std::abs(pitch(t + h) - pitch(t - h)) / (2 * h));
+  }
+  // Fore feet and hind feet come to the slope one after the other: 0.6 m apart at 0.8 m/s.
+  EXPECT_LT(steepest_turn, 0.5 / 0.6 * 0.8);
+  EXPECT_GT(steepest_turn, 0.3);
+}
+
+TEST(WalkTest, StairsAreClimbedWithTheBodyOverTheSteps) {
+  const Scene scene = makeTwoStoreys();
+  const Stairs& stairs = scene.stairs[0];
+  const Trajectory walk = walkAlong(scene.path, Time{0}, 0);
+  const double riser = 3.0 / stairs.steps, tread = 4.8 / stairs.steps;
+  int over_steps = 0;
+  for (double t = 0; t < walk.duration().seconds(); t += 0.01) {
+    const Eigen::Vector3d p = walk.poseAtOffset(t).translation;
+    const double along = p.x() - stairs.foot.x();
+    if (along <= 0 || along >= 4.8 || std::abs(p.y() - 1) > 0.6) continue;
+    // The walking surface joins the steps' back edges: it lies by up to a riser under the step.
+    const double step_z = riser * (std::floor(along / tread) + 1);
+    const double over = p.z() - step_z - scene.path.body_height_m;
+    EXPECT_LT(over, 0.05) << t;
+    EXPECT_GT(over, -riser - 0.05) << t;
+    ++over_steps;
+  }
+  EXPECT_GT(over_steps, 500);
+  EXPECT_NEAR(walk.poseAt(walk.end()).translation.z(), 3 + scene.path.body_height_m, 1e-9);
+}
+
+TEST(RiseProfileTest, IsStraightBetweenKnotsAndHoldsBeyondThem) {
+  RiseProfile profile;
+  profile.add(0, 1);
+  profile.add(2, 1);
+  profile.add(6, 3);
+  profile.add(6, 9);  // left out
+  EXPECT_EQ(profile.at(-1), 1);
+  EXPECT_EQ(profile.at(2), 1);
+  EXPECT_NEAR(profile.at(3), 1.5, 1e-12);
+  EXPECT_EQ(profile.at(7), 3);
+  EXPECT_NEAR(profile.slope(4), 0.5, 1e-12);
+  EXPECT_NEAR(profile.slope(2), 0.25, 1e-12);  // fore feet on the slope, hind feet on the flat
+  EXPECT_NEAR(profile.slope(6), 0.25, 1e-12);
+  EXPECT_EQ(profile.slope(8), 0);
 }
 
 TEST(TrajectoryTest, ConstantTwistIsTheExponential) {
