@@ -43,7 +43,7 @@ struct Edge {
 std::optional<Eigen::Vector2d> crossing(const Edge& a, const Edge& b) {
   const Eigen::Vector2d along_a = a.to - a.from, along_b = b.to - b.from;
   const double det = cross(along_a, along_b);
-  if (std::abs(det) < 1e-12 * along_a.norm() * along_b.norm()) return std::nullopt;
+  if (std::abs(det) <= 1e-12 * along_a.norm() * along_b.norm()) return std::nullopt;
   const double s = cross(b.from - a.from, along_b) / det, t = cross(b.from - a.from, along_a) / det;
   constexpr double kEnd = 1e-9;
   if (s <= kEnd || s >= 1 - kEnd || t <= kEnd || t >= 1 - kEnd) return std::nullopt;

@@ -1,5 +1,7 @@
 #include "tools/eval/wall_faces.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -83,6 +85,7 @@ std::vector<TrueFace> trueFaces(const Plan& plan, const MeshQuery& mesh) {
 
 void lookFromPath(const std::vector<StampedPose>& truth, const SE3& T_body_lidar, const MeshQuery& mesh,
                   std::vector<TrueFace>& faces) {
+  std::vector<std::pair<SE3, double>> looks;  // from where, for how long
   for (size_t i = 0; i < truth.size();) {
     size_t next = i + 1;
     while (next < truth.size() && truth[next].time - truth[i].time < kLookEvery) ++next;
@@ -90,9 +93,12 @@ void lookFromPath(const std::vector<StampedPose>& truth, const SE3& T_body_lidar
     // A gap of the truth counts as one look.
     const double duration_s =
         std::min((truth[next].time - truth[i].time).seconds(), 2 * kLookEvery.seconds());
-    for (TrueFace& face : faces) look(truth[i].pose * T_body_lidar, duration_s, mesh, face);
+    looks.emplace_back(truth[i].pose * T_body_lidar, duration_s);
     i = next;
   }
+  tbb::parallel_for(size_t{0}, faces.size(), [&](size_t f) {
+    for (const auto& [T_truth_lidar, duration_s] : looks) look(T_truth_lidar, duration_s, mesh, faces[f]);
+  });
 }
 
 }  // namespace sgraphs

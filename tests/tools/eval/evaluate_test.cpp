@@ -232,7 +232,8 @@ TEST(EvaluateTest, OutOfAnotherProgramIsJudged) {
   const Truth truth = readTruth(c.truth);
   const Evaluation e = evaluate(c.out, truth);
   EXPECT_LT(e.trajectories[0].absolute.translation_m.rmse, 1e-6);
-  EXPECT_GT(e.map.error.completeness, 0.9);
+  EXPECT_LT(e.map.error.distance_m.rmse, 0.005);
+  EXPECT_GT(e.map.error.completeness, 0.5);
   const std::string table = evaluationTable(e);
   for (const char* layer : {"rooms", "floors", "doorways"})
     EXPECT_THAT(table,

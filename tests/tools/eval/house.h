@@ -57,8 +57,8 @@ struct House {
     }
     for (const TrueRoom& room : plan.rooms) addRoom(graph, room.polygon, room.floor, T_map_truth);
     for (const TrueDoorway& doorway : plan.doorways)
-      graph.doorways.push_back(
-          {"r0", "r1", "f" + std::to_string(doorway.floor), T_map_truth * doorway.position, doorway.width_m});
+      graph.doorways.push_back({doorway.floor ? "r4" : "r0", "p1", "f" + std::to_string(doorway.floor),
+                                T_map_truth * doorway.position, doorway.width_m});
     return graph;
   }
 
