@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 #include "common/base/error.h"
 
@@ -62,11 +63,19 @@ class PointGrid {
   std::vector<Entry> entries_;
 };
 
-std::vector<Eigen::Vector3d> thinPath(const std::vector<Eigen::Vector3d>& path) {
-  std::vector<Eigen::Vector3d> thin;
-  for (const auto& p : path)
-    if (thin.empty() || (p - thin.back()).norm() >= kPathStep_m) thin.push_back(p);
-  return thin;
+// Places where the path has been, apart from each other however often it came by.
+std::vector<Eigen::Vector3d> placesOf(const std::vector<Eigen::Vector3d>& path) {
+  std::vector<Eigen::Vector3d> places;
+  Eigen::Vector3d last = Eigen::Vector3d::Constant(INFINITY);  // that was looked at
+  for (const auto& p : path) {
+    if ((p - last).norm() < 0.1 * kPathStep_m) continue;
+    last = p;
+    const bool known = std::any_of(places.rbegin(), places.rend(), [&](const Eigen::Vector3d& q) {
+      return (p - q).squaredNorm() < kPathStep_m * kPathStep_m;
+    });
+    if (!known) places.push_back(p);
+  }
+  return places;
 }
 
 // Nearest viewpoints first: most samples are seen from one of them.
@@ -77,9 +86,12 @@ bool seenFromPath(const MeshQuery& query, const Eigen::Vector3d& sample,
     const double squared = (path[i] - sample).squaredNorm();
     if (squared <= kSight_m * kSight_m) near.emplace_back(squared, i);
   }
-  std::sort(near.begin(), near.end());
-  for (const auto& [squared, i] : near)
-    if (!query.occluded(path[i], sample, kSightMargin_m)) return true;
+  // Put in order as far as needed only: a heap.
+  std::make_heap(near.begin(), near.end(), std::greater<>());
+  for (auto end = near.end(); end != near.begin(); --end) {
+    std::pop_heap(near.begin(), end, std::greater<>());
+    if (!query.occluded(path[(end - 1)->second], sample, kSightMargin_m)) return true;
+  }
   return false;
 }
 
@@ -148,7 +160,7 @@ MapError mapError(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& 
 
   const PointGrid grid(points_truth, kNear_m);
   const auto samples = sampleSurface(mesh, kSampleSpacing_m);
-  const auto coverage = coverageOf(samples, query, grid, thinPath(path_truth));
+  const auto coverage = coverageOf(samples, query, grid, placesOf(path_truth));
   // Summed up in the samples' order, whichever thread looked at them.
   double covered_m2 = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
