@@ -20,14 +20,12 @@ void run(const Options& options) {
   const Evaluation evaluation = evaluate(options.out_dir, truth);
   std::fputs(evaluationTable(evaluation).c_str(), stdout);
   writeFile(options.out_dir + "/eval.json", evaluationJson(evaluation));
-  writeFile(options.out_dir + "/eval_trajectory.png", trajectoryPlot(evaluation, truth));
-  writeFile(options.out_dir + "/eval_error.png", errorPlot(evaluation, truth));
-  const std::string map = mapPlot(evaluation, truth);
-  if (!map.empty()) writeFile(options.out_dir + "/eval_map.png", map);
-  const std::string walls = wallPlot(evaluation, truth);
-  if (!walls.empty()) writeFile(options.out_dir + "/eval_walls.png", walls);
-  std::printf("wrote %s/eval.json, eval_trajectory.png, eval_error.png%s%s\n", options.out_dir.c_str(),
-              map.empty() ? "" : ", eval_map.png", walls.empty() ? "" : ", eval_walls.png");
+  std::string written = "eval.json";
+  for (const auto& [name, png] : evaluationPlots(evaluation, truth)) {
+    writeFile(options.out_dir + "/" + name, png);
+    written += ", " + name;
+  }
+  std::printf("wrote %s/%s\n", options.out_dir.c_str(), written.c_str());
 }
 
 }  // namespace
@@ -50,7 +48,10 @@ void addEval(CLI::App& app) {
       "to\nthe first keyframe: the number in brackets.\n"
       "Walls: the two sides of each wall of plan.json; asked for are those that the sensor had in view for 5 "
       "s\n"
-      "(docs/accuracy.md).");
+      "(docs/accuracy.md).\n"
+      "Rooms: IoU of 0.5 or more with the true polygon, one to one, on each floor; asked for are those that "
+      "the "
+      "path\nis inside of for 1 s. Floors: within 0.3 m. Doorways: within 0.5 m.");
   command->callback([options] { run(*options); });
 }
 

@@ -132,4 +132,21 @@ std::string mapPlot(const Evaluation& evaluation, const Truth& truth) {
   return view.canvas().encode();
 }
 
+std::vector<std::pair<std::string, std::string>> evaluationPlots(const Evaluation& evaluation,
+                                                                 const Truth& truth) {
+  std::vector<std::pair<std::string, std::string>> plots;
+  const auto add = [&](const std::string& name, std::string png) {
+    if (!png.empty()) plots.emplace_back(name, std::move(png));
+  };
+  add("eval_trajectory.png", trajectoryPlot(evaluation, truth));
+  add("eval_error.png", errorPlot(evaluation, truth));
+  add("eval_map.png", mapPlot(evaluation, truth));
+  add("eval_walls.png", wallPlot(evaluation, truth));
+  const size_t storeys = truth.plan ? truth.plan->floors_z_m.size() : 0;
+  for (size_t s = 0; s < storeys; ++s)
+    add(storeys == 1 ? "eval_rooms.png" : "eval_rooms_" + std::to_string(s) + ".png",
+        roomPlot(evaluation, truth, s));
+  return plots;
+}
+
 }  // namespace sgraphs

@@ -16,6 +16,12 @@ std::string mapPlot(const Evaluation& evaluation, const Truth& truth);         /
 // True walls grey; their faces as they were found, missed or doubled; estimated walls on top, false ones
 // marked.
 std::string wallPlot(const Evaluation& evaluation, const Truth& truth);
+// One storey's true rooms outlined, found ones filled, false ones hatched; doorways as ticks.
+std::string roomPlot(const Evaluation& evaluation, const Truth& truth, size_t storey);
+
+// All that have something to show, by the name of their file.
+std::vector<std::pair<std::string, std::string>> evaluationPlots(const Evaluation& evaluation,
+                                                                 const Truth& truth);
 
 // Where a mesh crosses a height, seen from above.
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sliceMesh(const TriangleMesh& mesh, double z_m);

@@ -1,23 +1,15 @@
 #include "tools/eval/eval_report.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <nlohmann/json.hpp>
+
+#include "tools/eval/layer_report.h"
 
 namespace sgraphs {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
+using report::format;
+using report::Json;
+using report::statisticsJson;
 
 std::string relativeCell(const std::optional<RelativeError>& error) {
   if (!error) return format("%17s", "-");
@@ -90,18 +82,6 @@ std::string estimateLines(const EstimateCalibration& e) {
                                     format("; %zu walls\n", e.plane_tilt.count)
                               : std::string("not judged: no wall lies on a true face\n");
   return lines;
-}
-
-std::string layerLine(const LayerResult& layer) {
-  const std::string asked = layer.asked ? format("; the truth asks for %zu", *layer.asked) : std::string();
-  const std::string found = layer.in_graph
-                                ? format("%zu in the graph, not judged in this version", layer.in_graph)
-                                : std::string("missing in this version's graph");
-  return format("%-9s ", layer.layer.c_str()) + found + asked + "\n";
-}
-
-Json statisticsJson(const ErrorStatistics& s) {
-  return {{"count", s.count}, {"rmse", s.rmse}, {"median", s.median}, {"max", s.max}};
 }
 
 Json neesJson(const NeesStatistics& s) {
@@ -188,14 +168,15 @@ std::string evaluationTable(const Evaluation& evaluation) {
                              "median", "max", "evo", "RPE per 1 m", "RPE per 1 s", "coverage");
   for (const auto& t : evaluation.trajectories) table += trajectoryRow(t);
   table += mapLines(evaluation.map) + calibrationLines(evaluation) + estimateLines(evaluation.estimates) +
-           wallLines(evaluation.walls);
-  for (const auto& layer : evaluation.layers) table += layerLine(layer);
+           wallLines(evaluation.walls) + report::roomLines(evaluation.rooms) +
+           report::floorLines(evaluation.floors, evaluation.by_storey) +
+           report::doorwayLines(evaluation.doorways);
   return table;
 }
 
 std::string evaluationJson(const Evaluation& evaluation) {
   Json json;
-  json["schema"] = "sgraphs-eval/1";
+  json["schema"] = "sgraphs-eval/2";
   for (const auto& t : evaluation.trajectories) json["trajectories"][t.file] = trajectoryJson(t);
   json["map"] = mapJson(evaluation.map);
   json["nees"] = Json::object();
@@ -207,9 +188,9 @@ std::string evaluationJson(const Evaluation& evaluation) {
                           {"inside_95_rotation", c.inside_rotation}};
   json["nees_of_estimates"] = estimatesJson(evaluation.estimates);
   json["walls"] = wallsJson(evaluation.walls);
-  for (const auto& layer : evaluation.layers)
-    json["layers"][layer.layer] = {{"in_graph", layer.in_graph},
-                                   {"asked", layer.asked ? Json(*layer.asked) : Json(nullptr)}};
+  json["rooms"] = report::roomsJson(evaluation.rooms);
+  json["floors"] = report::floorsJson(evaluation.floors, evaluation.by_storey);
+  json["doorways"] = report::doorwaysJson(evaluation.doorways);
   return json.dump(2) + "\n";
 }
 

@@ -1,10 +1,8 @@
 #include "tools/eval/evaluate.h"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
-#include "common/io/text_file.h"
 
 namespace sgraphs {
 namespace {
@@ -60,6 +58,29 @@ std::string whyWallsCannotBeJudged(bool has_graph, const Truth& truth) {
   return {};
 }
 
+// Why a layer of the graph cannot be judged: the truth does not hold it, or this run did not make it.
+std::string whyMissing(const std::string& layer, bool has_graph, bool in_truth, bool in_graph) {
+  if (!in_truth) return "the truth has no plan.json with " + layer;
+  if (!has_graph) return "missing in this run: OUT has no graph.json";
+  if (!in_graph) return "missing in this run: graph.json holds no " + layer;
+  return {};
+}
+
+void judgeLayers(const EstimatedGraph& graph, bool has_graph, const Truth& truth, const SE3& T_truth_map,
+                 Evaluation& evaluation) {
+  const Plan plan = truth.plan.value_or(Plan{});
+  evaluation.rooms = judgeRooms(plan, truth.poses, graph, T_truth_map);
+  evaluation.floors = judgeFloors(plan, truth.poses, graph.floors, T_truth_map);
+  evaluation.doorways = judgeDoorways(plan, truth.poses, graph, T_truth_map);
+  evaluation.rooms.missing = whyMissing("rooms", has_graph, !plan.rooms.empty(), !graph.rooms.empty());
+  evaluation.floors.missing =
+      whyMissing("floors", has_graph, !plan.floors_z_m.empty(), !graph.floors.empty());
+  evaluation.doorways.missing =
+      whyMissing("doorways", has_graph, !plan.doorways.empty(), !graph.doorways.empty());
+  if (evaluation.floors.numAsked() > 1)
+    evaluation.by_storey = errorByStorey(plan, truth.poses, evaluation.trajectories.front().absolute);
+}
+
 void judgeGraph(const std::string& graph_json_path, const Truth& truth, const SE3& T_truth_map,
                 Evaluation& evaluation) {
   const bool has_graph = std::filesystem::exists(graph_json_path);
@@ -69,33 +90,7 @@ void judgeGraph(const std::string& graph_json_path, const Truth& truth, const SE
   if (evaluation.walls.missing.empty())
     evaluation.walls = judgeWalls(*truth.plan, MeshQuery(*truth.mesh), truth.poses, graph.walls, T_truth_map);
   evaluation.estimates = calibrationOfEstimates(graph, truth.poses, evaluation.walls);
-}
-
-// Counts the graph's nodes by layer, and its doorways, which are links.
-std::map<std::string, size_t> countLayers(const std::string& graph_json_path) {
-  std::map<std::string, size_t> counts;
-  if (!std::filesystem::exists(graph_json_path)) return counts;
-  try {
-    const auto json = nlohmann::json::parse(readFile(graph_json_path));
-    for (const auto& node : json.at("nodes")) ++counts[node.at("layer")];
-    for (const auto& link : json.at("links")) counts["doorways"] += link.at("kind") == "doorway";
-  } catch (const nlohmann::json::exception& error) {
-    throw Error("cannot read graph '" + graph_json_path + "': " + error.what());
-  }
-  return counts;
-}
-
-std::vector<LayerResult> judgeLayers(const std::string& out_dir, const Truth& truth) {
-  auto counts = countLayers(out_dir + "/graph.json");
-  std::vector<LayerResult> layers;
-  for (const char* layer : {"rooms", "floors", "doorways"})
-    layers.push_back({layer, counts[layer], std::nullopt});
-  if (truth.plan) {
-    layers[0].asked = askedRooms(*truth.plan, truth.poses).size();
-    layers[1].asked = truth.plan->floors_z_m.size();
-    layers[2].asked = truth.plan->num_doorways;
-  }
-  return layers;
+  judgeLayers(graph, has_graph, truth, T_truth_map, evaluation);
 }
 
 }  // namespace
@@ -116,7 +111,6 @@ Evaluation evaluate(const std::string& out_dir, const Truth& truth) {
   if (evaluation.calibration.empty())
     evaluation.calibration_missing = "graph.json has no links with a covariance in the truth's time";
   judgeGraph(out_dir + "/graph.json", truth, first.absolute.T_truth_map, evaluation);
-  evaluation.layers = judgeLayers(out_dir, truth);
   return evaluation;
 }
 

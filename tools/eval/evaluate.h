@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "tools/eval/calibration.h"
+#include "tools/eval/doorway_error.h"
 #include "tools/eval/estimate_calibration.h"
+#include "tools/eval/floor_error.h"
 #include "tools/eval/map_error.h"
+#include "tools/eval/room_error.h"
 #include "tools/eval/trajectory_error.h"
 #include "tools/eval/truth.h"
 #include "tools/eval/wall_error.h"
@@ -36,13 +39,6 @@ struct MapResult {
   bool counts() const { return error.completeness >= kMinCompleteness; }
 };
 
-// A layer that the truth asks for, or the graph has, and that is only counted.
-struct LayerResult {
-  std::string layer;
-  size_t in_graph = 0;
-  std::optional<size_t> asked;  // by plan.json
-};
-
 struct Evaluation {
   std::vector<TrajectoryResult> trajectories;  // the first one's alignment moves everything else
   MapResult map;
@@ -50,7 +46,10 @@ struct Evaluation {
   std::string calibration_missing;
   WallResult walls;
   EstimateCalibration estimates;
-  std::vector<LayerResult> layers;
+  RoomResult rooms;
+  FloorResult floors;
+  DoorwayResult doorways;
+  std::vector<StoreyError> by_storey;  // of the first trajectory; empty if the path is on one storey only
 };
 
 // Judges the folder OUT. Throws Error if it holds no trajectory.tum or a file of it cannot be read.

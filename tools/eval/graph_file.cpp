@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
@@ -57,16 +58,59 @@ EstimatedWall wallOf(const Json& node, const std::string& path) {
   return wall;
 }
 
+// Empty where the file says nothing or null.
+std::string textOf(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found == json.end() || found->is_null() ? std::string() : found->get<std::string>();
+}
+
+EstimatedRoom roomOf(const Json& node) {
+  EstimatedRoom room;
+  room.id = node.at("id");
+  room.floor = textOf(node, "floor");
+  if (node.contains("polygon") && !node["polygon"].is_null())
+    for (const auto& corner : node["polygon"]) room.polygon.emplace_back(corner.at(0), corner.at(1));
+  if (node.contains("utime") && !node["utime"].is_null()) room.accepted = Time{node["utime"].get<int64_t>()};
+  return room;
+}
+
+EstimatedFloor floorOf(const Json& node) {
+  EstimatedFloor floor;
+  floor.id = node.at("id");
+  if (node.contains("center"))
+    floor.center = {node["center"].at(0).get<double>(), node["center"].at(1).get<double>()};
+  if (node.contains("z") && !node["z"].is_null()) floor.z_m = node["z"].get<double>();
+  return floor;
+}
+
+EstimatedDoorway doorwayOf(const Json& link, const std::map<std::string, std::string>& floors) {
+  EstimatedDoorway doorway;
+  doorway.source = link.at("source");
+  doorway.target = link.at("target");
+  for (const std::string& end : {doorway.source, doorway.target})
+    if (const auto floor = floors.find(end); doorway.floor.empty() && floor != floors.end())
+      doorway.floor = floor->second;
+  doorway.position = vectorOf(link.at("xyz"));
+  doorway.width_m = link.at("width");
+  return doorway;
+}
+
 }  // namespace
 
 EstimatedGraph readEstimatedGraph(const std::string& graph_json_path) {
   try {
     const auto json = Json::parse(readFile(graph_json_path));
     EstimatedGraph graph;
+    std::map<std::string, std::string> floor_of_node;
     for (const auto& node : json.at("nodes")) {
+      floor_of_node[node.at("id")] = textOf(node, "floor");
       if (node.at("layer") == "keyframes") graph.keyframes.push_back(keyframeOf(node));
       if (node.at("layer") == "walls") graph.walls.push_back(wallOf(node, graph_json_path));
+      if (node.at("layer") == "rooms") graph.rooms.push_back(roomOf(node));
+      if (node.at("layer") == "floors") graph.floors.push_back(floorOf(node));
     }
+    for (const auto& link : json.at("links"))
+      if (link.at("kind") == "doorway") graph.doorways.push_back(doorwayOf(link, floor_of_node));
     return graph;
   } catch (const Json::exception& error) {
     throw Error("cannot read graph '" + graph_json_path + "': " + error.what());

@@ -7,6 +7,7 @@
 
 #include "common/base/time.h"
 #include "common/geometry/se3.h"
+#include "tools/eval/plan_polygon.h"
 
 namespace sgraphs {
 
@@ -32,12 +33,36 @@ struct EstimatedKeyframe {
   std::optional<Matrix6d> covariance;  // of T_map_body given the first keyframe, tangent of body
 };
 
-struct EstimatedGraph {
-  std::vector<EstimatedKeyframe> keyframes;  // in the file's order: by id
-  std::vector<EstimatedWall> walls;
+struct EstimatedRoom {
+  std::string id;
+  std::string floor;             // id of its floor; empty if the file does not say
+  Corners polygon;               // in map; what the file says, even if that is no outline
+  std::optional<Time> accepted;  // first in its present form
 };
 
-// What graph.json says of keyframes and walls. Throws Error naming the file and what is wrong with it.
+struct EstimatedFloor {
+  std::string id;
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  std::optional<double> z_m;  // of the walking surface
+};
+
+struct EstimatedDoorway {
+  std::string source, target;
+  std::string floor;  // of the source, else of the target; empty if neither says
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  double width_m = 0;
+};
+
+// Each in the file's order: by id.
+struct EstimatedGraph {
+  std::vector<EstimatedKeyframe> keyframes;
+  std::vector<EstimatedWall> walls;
+  std::vector<EstimatedRoom> rooms;
+  std::vector<EstimatedFloor> floors;
+  std::vector<EstimatedDoorway> doorways;
+};
+
+// What graph.json says of them. Throws Error naming the file and what is wrong with it.
 EstimatedGraph readEstimatedGraph(const std::string& graph_json_path);
 
 }  // namespace sgraphs

@@ -1,10 +1,13 @@
 #include "tools/eval/map_error.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <functional>
 
 #include "common/base/error.h"
 
@@ -16,6 +19,7 @@ constexpr double kNear_m = 0.05;
 constexpr double kSampleSpacing_m = 0.14;  // longest edge: legs of 0.1 m
 constexpr double kPathStep_m = 0.25;
 constexpr double kSightMargin_m = 0.005;
+constexpr size_t kBlock = 1024;  // samples that one thread looks at in a row
 
 // Points in cells of the search radius, sorted by cell: found again by binary search.
 class PointGrid {
@@ -59,11 +63,19 @@ class PointGrid {
   std::vector<Entry> entries_;
 };
 
-std::vector<Eigen::Vector3d> thinPath(const std::vector<Eigen::Vector3d>& path) {
-  std::vector<Eigen::Vector3d> thin;
-  for (const auto& p : path)
-    if (thin.empty() || (p - thin.back()).norm() >= kPathStep_m) thin.push_back(p);
-  return thin;
+// Places where the path has been, apart from each other however often it came by.
+std::vector<Eigen::Vector3d> placesOf(const std::vector<Eigen::Vector3d>& path) {
+  std::vector<Eigen::Vector3d> places;
+  Eigen::Vector3d last = Eigen::Vector3d::Constant(INFINITY);  // that was looked at
+  for (const auto& p : path) {
+    if ((p - last).norm() < 0.1 * kPathStep_m) continue;
+    last = p;
+    const bool known = std::any_of(places.rbegin(), places.rend(), [&](const Eigen::Vector3d& q) {
+      return (p - q).squaredNorm() < kPathStep_m * kPathStep_m;
+    });
+    if (!known) places.push_back(p);
+  }
+  return places;
 }
 
 // Nearest viewpoints first: most samples are seen from one of them.
@@ -74,10 +86,38 @@ bool seenFromPath(const MeshQuery& query, const Eigen::Vector3d& sample,
     const double squared = (path[i] - sample).squaredNorm();
     if (squared <= kSight_m * kSight_m) near.emplace_back(squared, i);
   }
-  std::sort(near.begin(), near.end());
-  for (const auto& [squared, i] : near)
-    if (!query.occluded(path[i], sample, kSightMargin_m)) return true;
+  // Put in order as far as needed only: a heap.
+  std::make_heap(near.begin(), near.end(), std::greater<>());
+  for (auto end = near.end(); end != near.begin(); --end) {
+    std::pop_heap(near.begin(), end, std::greater<>());
+    if (!query.occluded(path[(end - 1)->second], sample, kSightMargin_m)) return true;
+  }
   return false;
+}
+
+std::vector<double> distancesTo(const MeshQuery& query, const std::vector<Eigen::Vector3d>& points) {
+  // Wide enough for any point of a building; a point beyond is as far as the query goes.
+  constexpr double kFarthest_m = 1000;
+  std::vector<double> distances(points.size());
+  tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
+    distances[i] = query.distance(points[i], kFarthest_m).value_or(kFarthest_m);
+  });
+  return distances;
+}
+
+enum class Coverage : uint8_t { kUnseen, kSeen, kMapped };
+
+std::vector<Coverage> coverageOf(const std::vector<SurfaceSample>& samples, const MeshQuery& query,
+                                 const PointGrid& grid, const std::vector<Eigen::Vector3d>& path) {
+  std::vector<Coverage> coverage(samples.size(), Coverage::kUnseen);
+  const size_t blocks = (samples.size() + kBlock - 1) / kBlock;
+  tbb::parallel_for(size_t{0}, blocks, [&](size_t block) {
+    std::vector<std::pair<double, size_t>> scratch;
+    for (size_t i = block * kBlock; i < std::min(samples.size(), (block + 1) * kBlock); ++i)
+      if (seenFromPath(query, samples[i].position, path, scratch))
+        coverage[i] = grid.anyWithinRadius(samples[i].position) ? Coverage::kMapped : Coverage::kSeen;
+  });
+  return coverage;
 }
 
 void halve(const std::array<Eigen::Vector3d, 3>& t, double spacing, std::vector<SurfaceSample>& samples) {
@@ -114,23 +154,18 @@ MapError mapError(const TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& 
   if (points_truth.empty()) throw Error("map.ply holds no point: nothing was mapped");
   const MeshQuery query(mesh);
   MapError result;
-  std::vector<double> distances;
-  for (const auto& p : points_truth) {
-    // Wide enough for any point of a building; a point beyond is as far as the query goes.
-    constexpr double kFarthest_m = 1000;
-    distances.push_back(query.distance(p, kFarthest_m).value_or(kFarthest_m));
-    result.distances_m.push_back(static_cast<float>(distances.back()));
-  }
-  result.distance_m = statisticsOf(std::move(distances));
+  const auto distances = distancesTo(query, points_truth);
+  result.distances_m.assign(distances.begin(), distances.end());
+  result.distance_m = statisticsOf(distances);
 
   const PointGrid grid(points_truth, kNear_m);
-  const auto path = thinPath(path_truth);
+  const auto samples = sampleSurface(mesh, kSampleSpacing_m);
+  const auto coverage = coverageOf(samples, query, grid, placesOf(path_truth));
+  // Summed up in the samples' order, whichever thread looked at them.
   double covered_m2 = 0;
-  std::vector<std::pair<double, size_t>> scratch;
-  for (const SurfaceSample& sample : sampleSurface(mesh, kSampleSpacing_m)) {
-    if (!seenFromPath(query, sample.position, path, scratch)) continue;
-    result.visible_area_m2 += sample.area_m2;
-    if (grid.anyWithinRadius(sample.position)) covered_m2 += sample.area_m2;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (coverage[i] != Coverage::kUnseen) result.visible_area_m2 += samples[i].area_m2;
+    if (coverage[i] == Coverage::kMapped) covered_m2 += samples[i].area_m2;
   }
   if (result.visible_area_m2 > 0) result.completeness = covered_m2 / result.visible_area_m2;
   return result;

@@ -8,7 +8,8 @@
 
 namespace sgraphs {
 
-// Distances to and sight lines through a triangle mesh, by Embree (which stays out of the header).
+// Distances to and sight lines through a triangle mesh, by Embree (which stays out of the header). Several
+// threads may ask at once.
 class MeshQuery {
  public:
   explicit MeshQuery(const TriangleMesh& mesh);

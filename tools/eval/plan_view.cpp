@@ -14,11 +14,14 @@ constexpr int kMaxPixels = 2000;
 constexpr double kOutlineHeight_m = 1.0;
 constexpr double kBodyHeight_m = 0.5;  // a legged robot's
 
-Segments outlines(const Truth& truth) {
+Segments outlines(const Truth& truth, std::optional<size_t> storey) {
   Segments segments;
   if (!truth.mesh) return segments;
-  for (const double z_m : floorHeights(truth))
-    for (const auto& segment : sliceMesh(*truth.mesh, z_m + kOutlineHeight_m)) segments.push_back(segment);
+  const auto floors = floorHeights(truth);
+  for (size_t i = 0; i < floors.size(); ++i)
+    if (!storey || i == *storey)
+      for (const auto& segment : sliceMesh(*truth.mesh, floors[i] + kOutlineHeight_m))
+        segments.push_back(segment);
   return segments;
 }
 
@@ -45,7 +48,7 @@ std::vector<double> floorHeights(const Truth& truth) {
   return {z[z.size() / 2] - kBodyHeight_m};
 }
 
-PlanView::PlanView(const Truth& truth) : walls_(outlines(truth)) {
+PlanView::PlanView(const Truth& truth, std::optional<size_t> storey) : walls_(outlines(truth, storey)) {
   Paper extent{Eigen::Vector2d::Constant(INFINITY), Eigen::Vector2d::Constant(-INFINITY)};
   const auto include = [&](const Eigen::Vector2d& p) {
     extent.min = extent.min.cwiseMin(p);
@@ -53,6 +56,9 @@ PlanView::PlanView(const Truth& truth) : walls_(outlines(truth)) {
   };
   for (const auto& pose : truth.poses) include(pose.pose.translation.head<2>());
   for (const auto& [a, b] : walls_) include(a), include(b);
+  if (truth.plan)
+    for (const TrueRoom& room : truth.plan->rooms)
+      std::for_each(room.polygon.begin(), room.polygon.end(), include);
   extent_ = {extent.min.array() - 0.5, extent.max.array() + 0.5};
   letter_ = (extent_.max - extent_.min).maxCoeff() * 0.013;
   const double missing = 75 * letter_ - (extent_.max.x() - extent_.min.x());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,7 +28,8 @@ std::vector<double> floorHeights(const Truth& truth);
 // of legend above.
 class PlanView {
  public:
-  explicit PlanView(const Truth& truth);
+  // Of all storeys on top of each other, or of one, an index of floorHeights().
+  explicit PlanView(const Truth& truth, std::optional<size_t> storey = std::nullopt);
 
   Canvas& canvas() { return *canvas_; }
   const Paper& extent() const { return extent_; }

@@ -6,13 +6,14 @@
 
 #include "common/io/ply.h"
 #include "common/io/tum.h"
+#include "tools/eval/plan_polygon.h"
 
 namespace sgraphs {
 
 struct TrueRoom {
   std::string id;
-  int floor = 0;
-  std::vector<Eigen::Vector2d> polygon;  // in the building's frame [m]
+  size_t floor = 0;  // index in Plan::floors_z_m
+  Corners polygon;   // in the building's frame [m]
 
   // Corridors are neither asked for nor false (contract.md).
   bool optional() const { return id.rfind("C_", 0) == 0 || id.rfind("corridor", 0) == 0; }
@@ -25,15 +26,22 @@ struct TrueWall {
   double thickness_m = 0;
   double z_low_m = 0;
   double z_high_m = 0;
+  bool glass = false;  // a pane: nobody is asked to find it
+};
+
+struct TrueDoorway {
+  size_t floor = 0;                                    // index in Plan::floors_z_m
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // middle of the threshold [m]
+  double width_m = 0;
 };
 
 // plan.json: what the building is.
 struct Plan {
   SE3 T_body_lidar;
-  std::vector<double> floors_z_m;
+  std::vector<double> floors_z_m;  // empty only if no room or doorway asks for a storey
   std::vector<TrueRoom> rooms;
   std::vector<TrueWall> walls;
-  size_t num_doorways = 0;
+  std::vector<TrueDoorway> doorways;
 };
 
 // The folder of `--truth`; the body's poses are in the building's frame.
@@ -45,8 +53,5 @@ struct Truth {
 
 // gt.tum must be there; plan.json and mesh.ply may be absent, but not broken: throws Error naming the file.
 Truth readTruth(const std::string& folder);
-
-// Rooms that the path is inside of for at least a second, corridors left out.
-std::vector<TrueRoom> askedRooms(const Plan& plan, const std::vector<StampedPose>& poses);
 
 }  // namespace sgraphs

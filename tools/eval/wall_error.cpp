@@ -5,6 +5,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/geometry/convex_polygon.h"
+#include "tools/eval/plan_polygon.h"
+
 namespace sgraphs {
 namespace {
 
@@ -17,20 +20,6 @@ constexpr double kMinFalseArea_m2 = 0.5;  // smaller walls are not held against 
 constexpr double kOnSurface_m = 0.05;
 constexpr double kOnSurfaceShare = 0.5;  // of a wall's extent that must lie on some surface
 constexpr double kExtentSpacing_m = 0.1;
-
-using Corners = std::vector<Eigen::Vector2d>;
-
-// Even-odd rule.
-bool contains(const Corners& polygon, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()))
-      inside = !inside;
-  }
-  return inside;
-}
 
 std::optional<WallMatch> matchOf(const TrueFace& face, const EstimatedWall& wall) {
   WallMatch match;
@@ -56,8 +45,15 @@ bool claimTheSame(const WallMatch& a, const WallMatch& b) {
   return static_cast<double>(shared.size()) > kDoubledShare * static_cast<double>(smaller);
 }
 
-// Share of the wall's extent near some surface of the building, whatever it is.
-double shareOnSurface(const EstimatedWall& wall, const MeshQuery& mesh) {
+bool onPane(const Eigen::Vector3d& p, const Plan& plan) {
+  return std::any_of(plan.walls.begin(), plan.walls.end(), [&](const TrueWall& wall) {
+    return wall.glass && p.z() > wall.z_low_m - kOnSurface_m && p.z() < wall.z_high_m + kOnSurface_m &&
+           distanceToSegment(p.head<2>(), wall.a, wall.b) <= 0.5 * wall.thickness_m + kOnSurface_m;
+  });
+}
+
+// Share of the wall's extent near some surface of the building, whatever it is; panes may not be in the mesh.
+double shareOnSurface(const EstimatedWall& wall, const Plan& plan, const MeshQuery& mesh) {
   const Eigen::Vector3d u = wall.axis_u, v = wall.normal.cross(u);
   Corners corners;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(INFINITY), high = -low;
@@ -71,7 +67,8 @@ double shareOnSurface(const EstimatedWall& wall, const MeshQuery& mesh) {
     for (double y = low.y() + 0.5 * kExtentSpacing_m; y < high.y(); y += kExtentSpacing_m) {
       if (!contains(corners, {x, y})) continue;
       ++inside;
-      near += mesh.distance(wall.centroid + x * u + y * v, kOnSurface_m).has_value();
+      const Eigen::Vector3d p = wall.centroid + x * u + y * v;
+      near += mesh.distance(p, kOnSurface_m).has_value() || onPane(p, plan);
     }
   return inside ? static_cast<double>(near) / static_cast<double>(inside) : 1.0;
 }
@@ -137,7 +134,7 @@ WallResult judgeWalls(const Plan& plan, const MeshQuery& mesh, const std::vector
   findMatches(result);
   for (size_t w = 0; w < result.walls.size(); ++w)
     if (polygonArea(result.walls[w].polygon) > kMinFalseArea_m2 &&
-        shareOnSurface(result.walls[w], mesh) < kOnSurfaceShare)
+        shareOnSurface(result.walls[w], plan, mesh) < kOnSurfaceShare)
       result.false_walls.push_back(w);
   return result;
 }

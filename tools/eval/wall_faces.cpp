@@ -1,5 +1,7 @@
 #include "tools/eval/wall_faces.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +25,7 @@ TrueFace faceOf(const Plan& plan, size_t index, bool left, const MeshQuery& mesh
   const TrueWall& wall = plan.walls[index];
   TrueFace face;
   face.wall = index;
+  face.glass = wall.glass;
   const Eigen::Vector2d along = (wall.b - wall.a).normalized();
   const Eigen::Vector2d shift = 0.5 * wall.thickness_m * Eigen::Vector2d(-along.y(), along.x());
   face.begin = left ? Eigen::Vector2d(wall.a + shift) : Eigen::Vector2d(wall.b - shift);
@@ -36,7 +39,8 @@ TrueFace faceOf(const Plan& plan, size_t index, bool left, const MeshQuery& mesh
       const double s = (static_cast<double>(column) + 0.5) / static_cast<double>(face.columns);
       const double t = (static_cast<double>(row) + 0.5) / static_cast<double>(rows);
       FaceSample sample{{s * face.length(), wall.z_low_m + t * (wall.z_high_m - wall.z_low_m)}, false, 0};
-      sample.exposed = mesh.distance(face.point(sample.at), kOnSurface_m).has_value();
+      // Whether the mesh holds panes is not said: on a pane every place is one that may be found.
+      sample.exposed = wall.glass || mesh.distance(face.point(sample.at), kOnSurface_m).has_value();
       face.samples.push_back(sample);
     }
   return face;
@@ -54,7 +58,7 @@ bool inView(const SE3& T_truth_lidar, const TrueFace& face, const Eigen::Vector3
 }
 
 void look(const SE3& T_truth_lidar, double duration_s, const MeshQuery& mesh, TrueFace& face) {
-  if (face.distance(T_truth_lidar.translation) <= 0) return;
+  if (face.glass || face.distance(T_truth_lidar.translation) <= 0) return;
   const double tried_m2 = kStride * kStride * face.sample_area_m2;  // one sample in so many is looked at
   double seen_m2 = 0;
   for (size_t row = 0; row < face.samples.size(); row += kStride * face.columns)
@@ -81,6 +85,7 @@ std::vector<TrueFace> trueFaces(const Plan& plan, const MeshQuery& mesh) {
 
 void lookFromPath(const std::vector<StampedPose>& truth, const SE3& T_body_lidar, const MeshQuery& mesh,
                   std::vector<TrueFace>& faces) {
+  std::vector<std::pair<SE3, double>> looks;  // from where, for how long
   for (size_t i = 0; i < truth.size();) {
     size_t next = i + 1;
     while (next < truth.size() && truth[next].time - truth[i].time < kLookEvery) ++next;
@@ -88,9 +93,12 @@ void lookFromPath(const std::vector<StampedPose>& truth, const SE3& T_body_lidar
     // A gap of the truth counts as one look.
     const double duration_s =
         std::min((truth[next].time - truth[i].time).seconds(), 2 * kLookEvery.seconds());
-    for (TrueFace& face : faces) look(truth[i].pose * T_body_lidar, duration_s, mesh, face);
+    looks.emplace_back(truth[i].pose * T_body_lidar, duration_s);
     i = next;
   }
+  tbb::parallel_for(size_t{0}, faces.size(), [&](size_t f) {
+    for (const auto& [T_truth_lidar, duration_s] : looks) look(T_truth_lidar, duration_s, mesh, faces[f]);
+  });
 }
 
 }  // namespace sgraphs

@@ -22,6 +22,7 @@ struct TrueFace {
   Eigen::Vector2d end = Eigen::Vector2d::Zero();
   std::vector<FaceSample> samples;  // row by row from below, `columns` in each
   size_t columns = 0;
+  bool glass = false;         // never in view: a LiDAR looks through it
   double sample_area_m2 = 0;  // what one sample stands for
   double seen_s = 0;          // how long kSeenArea_m2 of it and more were in view at once
 

@@ -7,7 +7,9 @@
 #include "common/base/error.h"
 #include "tests/backend/output/synthetic_planes.h"
 #include "tests/support/temp_folder.h"
+#include "tests/tools/eval/house.h"
 #include "tests/tools/eval/synthetic_building.h"
+#include "tools/eval/eval_plots.h"
 #include "tools/eval/eval_report.h"
 
 namespace sgraphs {
@@ -52,15 +54,15 @@ TEST(EvaluateTest, PerfectRunIsJudgedPerfect) {
 TEST(EvaluateTest, RoomsThePathEnteredAreAskedForCorridorsAreNot) {
   const Case c;
   const Truth truth = readTruth(c.truth);
-  const auto asked = askedRooms(*truth.plan, truth.poses);
-  ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].id, "R1");
+  EXPECT_THAT(askedRooms(*truth.plan, roomVisits(*truth.plan, truth.poses)),
+              testing::ElementsAre(true, false, false));
 }
 
 TEST(EvaluateTest, TableSaysWhatIsMissingInTheGraph) {
   const Case c;
   const std::string table = evaluationTable(evaluate(c.out, readTruth(c.truth)));
-  EXPECT_THAT(table, testing::HasSubstr("rooms     missing in this version's graph; the truth asks for 1\n"));
+  EXPECT_THAT(table, testing::HasSubstr(
+                         "rooms     missing in this run: graph.json holds no rooms; the truth asks for 1\n"));
   EXPECT_THAT(table, testing::HasSubstr(
                          "walls     4 faces seen for 5 s or more: 0 found, 4 missed, 0 doubled; 4 others: "));
 }
@@ -117,7 +119,9 @@ TEST(EvaluateTest, JsonHoldsTheFigures) {
   EXPECT_LT(json["trajectories"]["odometry.tum"]["ate_m"]["rmse"], 1e-6);
   EXPECT_EQ(json["trajectories"]["trajectory.tum"]["poses"], 140);
   EXPECT_TRUE(json["map"].contains("completeness"));
-  EXPECT_EQ(json["layers"]["rooms"]["asked"], 1);
+  EXPECT_EQ(json["rooms"]["asked"], 1);
+  EXPECT_TRUE(json["rooms"]["recall"].is_null());
+  EXPECT_EQ(json["rooms"]["missing"], "missing in this run: graph.json holds no rooms");
   EXPECT_EQ(json["nees"]["odometry"]["count"], 13);
 }
 
@@ -153,6 +157,99 @@ TEST(EvaluateTest, BrokenTruthIsNamed) {
   EXPECT_THAT(errorOf([&] { readTruth(c.truth); }), testing::HasSubstr("mesh.ply"));
   writeFile(c.truth + "/plan.json", "{\"rooms\": [{}]}");
   EXPECT_THAT(errorOf([&] { readTruth(c.truth); }), testing::HasSubstr("plan.json"));
+}
+
+struct HouseCase {
+  test::TempFolder folder;
+  std::string out = folder / "out";
+  std::string truth = folder / "truth";
+  test::House house;
+  EstimatedGraph graph = house.graph(test::kMapOfHouse);
+
+  Evaluation judge() {
+    test::writeHouse(house, graph, test::kMapOfHouse, out, truth);
+    return evaluate(out, readTruth(truth));
+  }
+};
+
+TEST(EvaluateTest, RoomsFloorsAndDoorwaysAreJudged) {
+  HouseCase c;
+  c.graph.rooms[0].accepted = test::House::kStart + Duration{4'000'000};
+  c.graph.rooms[4].polygon.pop_back();
+  c.graph.rooms[4].polygon.pop_back();
+  c.graph.doorways.pop_back();
+  const Evaluation e = c.judge();
+  const std::string table = evaluationTable(e);
+  EXPECT_THAT(table,
+              testing::HasSubstr("rooms     3 asked for: 2 found, 1 missed; 5 in the graph, 1 of them false; "
+                                 "recall 0.667, precision 0.750; mean IoU 1.000"));
+  EXPECT_THAT(table, testing::HasSubstr("rooms     missed: U1\n"));
+  EXPECT_THAT(table, testing::HasSubstr("rooms     false: r4 (has less than three corners)\n"));
+  EXPECT_THAT(table,
+              testing::HasSubstr("time to detection median 4.0 s, max 4.0 s, over 1 of 1 rooms occupied"));
+  EXPECT_THAT(table,
+              testing::HasSubstr("floors    2 asked for: 2 found, 0 missed; 2 in the graph, 0 of them false; "
+                                 "storey 0 (0.00 m): "));
+  EXPECT_THAT(table, testing::HasSubstr("floors    ATE: storey 0 (0.00 m) 0.0000 m ("));
+  EXPECT_THAT(table, testing::HasSubstr(
+                         "doorways  found: walked through 3 of 3, of rooms asked for 4 of 4, all 4 of 5; "
+                         "4 in the graph, 0 of them false; precision 1.000; off by"));
+  const auto json = nlohmann::json::parse(evaluationJson(e));
+  EXPECT_NEAR(json["rooms"]["recall"], 2.0 / 3, 1e-12);
+  EXPECT_EQ(json["rooms"]["missed"], nlohmann::json::array({"U1"}));
+  EXPECT_EQ(json["rooms"]["false"][0]["id"], "r4");
+  EXPECT_EQ(json["rooms"]["detection_s"]["median"], 4.0);
+  EXPECT_EQ(json["floors"]["recall"], 1.0);
+  EXPECT_EQ(json["floors"]["ate_by_storey"].size(), 3u);
+  EXPECT_EQ(json["doorways"]["of_asked_rooms"]["recall"], 1.0);
+  const auto plots = evaluationPlots(e, readTruth(c.truth));
+  EXPECT_EQ(std::count_if(plots.begin(), plots.end(),
+                          [](const auto& plot) { return plot.first.starts_with("eval_rooms_"); }),
+            2);
+}
+
+TEST(EvaluateTest, LayersThatARunDoesNotMakeAreMissingNotZero) {
+  HouseCase c;
+  c.graph.rooms.clear();
+  c.graph.doorways.clear();
+  const Evaluation e = c.judge();
+  EXPECT_THAT(evaluationTable(e),
+              testing::HasSubstr(
+                  "doorways  missing in this run: graph.json holds no doorways; the truth asks for 4\n"));
+  const auto json = nlohmann::json::parse(evaluationJson(e));
+  EXPECT_TRUE(json["doorways"]["precision"].is_null());
+  EXPECT_TRUE(json["rooms"]["found"].is_null());
+  EXPECT_EQ(json["rooms"]["asked"], 3);
+}
+
+// Another program writes a trajectory and a map, nothing else; the truth is a mesh without a plan.
+TEST(EvaluateTest, OutOfAnotherProgramIsJudged) {
+  const Case c;
+  for (const auto& entry : std::filesystem::directory_iterator(c.out))
+    if (entry.path().filename() != "trajectory.tum" && entry.path().filename() != "map.ply")
+      std::filesystem::remove_all(entry.path());
+  writeFile(c.truth + "/plan.json", "{}");
+  const Truth truth = readTruth(c.truth);
+  const Evaluation e = evaluate(c.out, truth);
+  EXPECT_LT(e.trajectories[0].absolute.translation_m.rmse, 1e-6);
+  EXPECT_LT(e.map.error.distance_m.rmse, 0.005);
+  EXPECT_GT(e.map.error.completeness, 0.5);
+  const std::string table = evaluationTable(e);
+  for (const char* layer : {"rooms", "floors", "doorways"})
+    EXPECT_THAT(table,
+                testing::HasSubstr(std::string("not judged: the truth has no plan.json with ") + layer));
+  EXPECT_TRUE(nlohmann::json::parse(evaluationJson(e))["rooms"]["recall"].is_null());
+  EXPECT_EQ(evaluationPlots(e, truth).size(), 3u);  // trajectory, error, map
+}
+
+TEST(EvaluateTest, RoomsOfAPlanAreCheckedWhenRead) {
+  const Case c;
+  writeFile(c.truth + "/plan.json",
+            R"({"floors": [0], "rooms": [{"id": "A", "floor": 1, "polygon": [[0, 0], [1, 0], [1, 1]]}]})");
+  EXPECT_THAT(errorOf([&] { readTruth(c.truth); }), testing::HasSubstr("room A is on floor 1 of 1"));
+  writeFile(c.truth + "/plan.json",
+            R"({"floors": [0], "rooms": [{"id": "A", "polygon": [[0, 0], [1, 1], [1, 0], [0, 1]]}]})");
+  EXPECT_THAT(errorOf([&] { readTruth(c.truth); }), testing::HasSubstr("room A has an outline that crosses"));
 }
 
 }  // namespace

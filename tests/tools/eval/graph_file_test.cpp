@@ -70,5 +70,31 @@ TEST(GraphFileTest, WhatIsWrongIsNamedWithTheFile) {
   EXPECT_THAT(errorOf(bad), testing::HasSubstr(room.path));
 }
 
+TEST(GraphFileTest, RoomsFloorsAndDoorwaysAreRead) {
+  const test::TempFolder folder;
+  const std::string path = folder / "graph.json";
+  writeFile(path, R"({"nodes": [
+    {"id": "r0", "layer": "rooms", "kind": "polygon", "polygon": [[0, 0], [2, 0], [2, 3]], "floor": "f1", "utime": 7},
+    {"id": "r1", "layer": "rooms", "kind": "finite", "polygon": null},
+    {"id": "p4", "layer": "free_space", "xyz": [0, 0, 0], "clearance": 1, "cluster": 2},
+    {"id": "f1", "layer": "floors", "center": [4, 5], "z": -0.5},
+    {"id": "f2", "layer": "floors", "center": [4, 5], "z": null}],
+   "links": [{"source": "p4", "target": "r0", "kind": "doorway", "xyz": [1, 2, 3], "width": 0.9},
+             {"source": "p4", "target": "r0", "kind": "free_space"}]})");
+  const EstimatedGraph graph = readEstimatedGraph(path);
+  ASSERT_EQ(graph.rooms.size(), 2u);
+  EXPECT_EQ(graph.rooms[0].polygon[2], Eigen::Vector2d(2, 3));
+  EXPECT_EQ(graph.rooms[0].floor, "f1");
+  EXPECT_EQ(graph.rooms[0].accepted->us, 7);
+  EXPECT_TRUE(graph.rooms[1].polygon.empty());
+  EXPECT_FALSE(graph.rooms[1].accepted);
+  ASSERT_EQ(graph.floors.size(), 2u);
+  EXPECT_EQ(*graph.floors[0].z_m, -0.5);
+  EXPECT_FALSE(graph.floors[1].z_m);
+  ASSERT_EQ(graph.doorways.size(), 1u);
+  EXPECT_EQ(graph.doorways[0].floor, "f1");  // the cluster has none
+  EXPECT_EQ(graph.doorways[0].width_m, 0.9);
+}
+
 }  // namespace
 }  // namespace sgraphs

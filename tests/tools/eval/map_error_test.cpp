@@ -49,6 +49,16 @@ TEST(MapErrorTest, HiddenAndFarSurfacesAreNotAskedFor) {
   EXPECT_NEAR(mapError(mesh, pointsOnWall(4, 0), kPath).visible_area_m2, 8, 1e-6);
 }
 
+TEST(MapErrorTest, PathsThatComeByAgainAskForNoMore) {
+  std::vector<Eigen::Vector3d> path;
+  for (int lap = 0; lap < 3; ++lap)
+    for (int i = 0; i < 100; ++i) path.push_back(kCorner + Eigen::Vector3d(9, 0.1 * i, 1));
+  const std::vector<Eigen::Vector3d> once(path.begin(), path.begin() + 100);
+  const MapError thrice = mapError(kWall, pointsOnWall(2, 0), path);
+  EXPECT_EQ(thrice.visible_area_m2, mapError(kWall, pointsOnWall(2, 0), once).visible_area_m2);
+  EXPECT_GT(thrice.visible_area_m2, 7.9);
+}
+
 TEST(MapErrorTest, EmptyMapIsAnError) {
   EXPECT_THROW(mapError(kWall, {}, kPath), Error);
 }

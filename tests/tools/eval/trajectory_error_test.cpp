@@ -16,6 +16,25 @@ TEST(AbsoluteErrorTest, MovedCopyHasNone) {
   EXPECT_LT(result.T_truth_map.rotation.angularDistance(test::kSomeTransform.inverse().rotation), 1e-7);
 }
 
+// Worked out by hand for evo's definition (evo_ape tum -a: Umeyama without scale, translation part, RMSE):
+// four corners of a square, two of them 10 cm too far out. By symmetry no rigid motion does better than none,
+// so the distances are 0.1, 0, 0.1, 0 m and their RMSE is sqrt(0.02 / 4) m.
+TEST(AbsoluteErrorTest, EqualsEvosDefinitionOnASquare) {
+  std::vector<StampedPose> truth, estimate;
+  const Eigen::Vector3d corners[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  for (int i = 0; i < 4; ++i) {
+    const Time time{1'000'000 + 100'000 * i};
+    const double out = i % 2 == 0 ? 1.1 : 1.0;
+    truth.push_back({time, {Eigen::Quaterniond::Identity(), corners[i]}});
+    estimate.push_back({time, test::kSomeTransform * SE3(Eigen::Quaterniond::Identity(), out * corners[i])});
+  }
+  const AbsoluteError error = absoluteError(truth, estimate);
+  EXPECT_NEAR(error.translation_m.rmse, std::sqrt(0.02 / 4), 1e-9);
+  EXPECT_NEAR(error.translation_m.max, 0.1, 1e-9);
+  // With equal stamps the nearest one is the interpolated one.
+  EXPECT_NEAR(absoluteErrorNearestStamp(truth, estimate)->rmse, std::sqrt(0.02 / 4), 1e-9);
+}
+
 TEST(AbsoluteErrorTest, ScaleIsNotForgiven) {
   const auto truth = test::curvedTruth();
   auto estimate = truth;

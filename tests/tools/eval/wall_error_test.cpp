@@ -168,5 +168,21 @@ TEST(WallErrorTest, AreaOfAPolygonInSpace) {
   EXPECT_NEAR(polygonArea(corners), 3, 1e-9);
 }
 
+// The partition is of glass, whether the mesh holds the pane or not.
+TEST(WallErrorTest, PanesAreNeitherAskedForNorFalse) {
+  Judge j;
+  j.rooms.plan.walls[4].glass = true;
+  j.faces = trueFaces(j.rooms.plan, j.mesh);
+  j.mapAll();
+  EXPECT_EQ(j.judge().counts(true).faces, 3u);
+  EXPECT_TRUE(j.judge().found[TwoRooms::kPartitionWest]);
+  j.rooms.mesh = test::rectangle({0, 0, 0}, {8, 0, 0}, {0, 4, 0});  // a floor and nothing on it
+  const WallResult result = judgeWalls(
+      j.rooms.plan, MeshQuery(j.rooms.mesh), TwoRooms::standing(10),
+      {TwoRooms::wholeOf(j.faces[TwoRooms::kPartitionWest]), TwoRooms::wholeOf(j.faces[TwoRooms::kSouth])},
+      SE3{});
+  EXPECT_EQ(result.false_walls, std::vector<size_t>{1});
+}
+
 }  // namespace
 }  // namespace sgraphs
