@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "tools/bench/baselines/point_filter.h"
+
+namespace sgraphs::bench {
+
+struct ScanMatch {
+  SE3 T_target_source;
+  bool converged = false;
+};
+
+// Registration of one cloud to another, both in their own body frames; PCL stays out of the header.
+class ScanRegistration {
+ public:
+  virtual ~ScanRegistration() = default;
+  virtual void setTarget(const Points& target) = 0;
+  virtual ScanMatch align(const Points& source, const SE3& T_target_source_guess) = 0;
+};
+
+// Generalised ICP. Defaults are those of HDL-SLAM's scan matching.
+struct GicpConfig {
+  double max_correspondence_m = 2.0;
+  double epsilon = 0.01;  // of the transform, where iterations end
+  int max_iterations = 64;
+  int neighbours = 20;  // for a point's covariance
+};
+std::unique_ptr<ScanRegistration> makeGicp(const GicpConfig& config = {});
+
+// Normal distributions transform.
+struct NdtConfig {
+  double resolution_m = 1.0;
+  double epsilon = 0.01;
+  double step_m = 0.1;
+  int max_iterations = 64;
+};
+std::unique_ptr<ScanRegistration> makeNdt(const NdtConfig& config = {});
+
+// Mean squared distance [m^2] from each source point to its nearest target point, those beyond max_range_m
+// left out; infinite if none is nearer. HDL-SLAM judges edges and loops by it.
+double fitness_m2(const Points& target, const Points& source, const SE3& T_target_source, double max_range_m);
+
+}  // namespace sgraphs::bench
