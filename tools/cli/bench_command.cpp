@@ -194,6 +194,20 @@ void runBaselineCommand(BaselineArguments& a) {
     std::printf("  %lld keyframes, %d loops\n", static_cast<long long>(report.keyframes), report.loops);
 }
 
+void addBaselineSettings(CLI::App& command, bench::BaselineOptions& options) {
+  const auto add = [&command](const char* name, double& value, const char* text) {
+    command.add_option(name, value, text)->check(CLI::PositiveNumber)->capture_default_str();
+  };
+  add("--voxel", options.filter.voxel_m, "Voxels of the prefilter [m]");
+  add("--keyframe-distance", options.odometry.keyframe_distance_m, "From one target scan to the next [m]");
+  add("--keyframe-angle", options.odometry.keyframe_angle_rad, "From one target scan to the next [rad]");
+  add("--gicp-reach", options.gicp.max_correspondence_m, "Farthest correspondence [m]");
+  add("--gicp-epsilon", options.gicp.epsilon, "Change of the transform that ends GICP");
+  add("--ndt-resolution", options.ndt.resolution_m, "Cells of NDT [m]");
+  add("--ndt-epsilon", options.ndt.epsilon, "Change of the transform that ends NDT");
+  add("--ndt-step", options.ndt.step_m, "Longest step of NDT's line search [m]");
+}
+
 void addBaseline(CLI::App& bench_command) {
   auto a = std::make_shared<BaselineArguments>();
   CLI::App* command = bench_command.add_subcommand(
@@ -208,6 +222,7 @@ void addBaseline(CLI::App& bench_command) {
       ->capture_default_str();
   command->add_flag("--with-legs", a->options.with_legs,
                     "The legs' odometry as guess of gicp and ndt, and as odometry of the graph");
+  addBaselineSettings(*command, a->options);
   command->footer("Example:\n  sgraphs bench baseline run.lcmlog -o OUT_GICP --method gicp");
   command->callback([a] { runBaselineCommand(*a); });
 }

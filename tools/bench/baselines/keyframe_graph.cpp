@@ -19,10 +19,18 @@ double between(double min_sigma, double max_sigma, double share) {
   return min_sigma * min_sigma + (max_sigma * max_sigma - min_sigma * min_sigma) * share;
 }
 
+GicpConfig loopGicp(const KeyframeGraphConfig& config) {
+  GicpConfig gicp;
+  gicp.max_correspondence_m = config.loop_reach_m;
+  return gicp;
+}
+
 }  // namespace
 
 KeyframeGraph::KeyframeGraph(const KeyframeGraphConfig& config)
-    : config_(config), registration_(makeGicp()), last_loop_path_m_(-config.loop_min_interval_m) {}
+    : config_(config),
+      registration_(makeGicp(loopGicp(config))),
+      last_loop_path_m_(-config.loop_min_interval_m) {}
 
 size_t KeyframeGraph::step(const SE3& T_odom_body, const Points& points_body) {
   if (keyframes_.empty() || farFrom(keyframes_.back().T_odom_body, T_odom_body, config_.keyframe_distance_m,

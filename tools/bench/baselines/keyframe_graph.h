@@ -16,6 +16,7 @@ struct KeyframeGraphConfig {
   double loop_min_path_m = 8.0;      // walked between the two ends of a loop
   double loop_min_interval_m = 5.0;  // walked since the last loop
   double loop_max_fitness_m2 = 0.1;
+  double loop_reach_m = 2.0;  // of GICP's correspondences
   double fitness_range_m = 2.0;
 };
 

@@ -10,9 +10,7 @@
 #include "common/io/ply.h"
 #include "common/io/text_file.h"
 #include "common/io/tum.h"
-#include "tools/bench/baselines/keyframe_graph.h"
 #include "tools/bench/baselines/point_map.h"
-#include "tools/bench/baselines/scan_odometry.h"
 #include "tools/bench/baselines/scan_source.h"
 
 namespace sgraphs::bench {
@@ -33,8 +31,10 @@ class Runner {
   explicit Runner(const BaselineOptions& options) : options_(options) {
     const bool legs_are_odometry =
         options.baseline == Baseline::kLegs || (options.baseline == Baseline::kGraph && options.with_legs);
-    if (!legs_are_odometry) odometry_.emplace(options.baseline == Baseline::kNdt ? makeNdt() : makeGicp());
-    if (options.baseline == Baseline::kGraph) graph_.emplace();
+    if (!legs_are_odometry)
+      odometry_.emplace(options.baseline == Baseline::kNdt ? makeNdt(options.ndt) : makeGicp(options.gicp),
+                        options.odometry);
+    if (options.baseline == Baseline::kGraph) graph_.emplace(options.graph);
   }
 
   bool withLegs() const { return options_.with_legs || options_.baseline == Baseline::kLegs; }
@@ -43,7 +43,7 @@ class Runner {
     const Stopwatch watch;
     ScanPose pose{recorded.scan.end, recorded.T_odom_body.value_or(SE3{}), 0};
     if (options_.baseline != Baseline::kLegs) {
-      const Points points = prefilter(recorded.scan, recorded.T_body_lidar, filter_);
+      const Points points = prefilter(recorded.scan, recorded.T_body_lidar, options_.filter);
       if (odometry_) pose.T_odom_body = odometry_->step(points, recorded.T_odom_body);
       if (graph_) pose.keyframe = graph_->step(pose.T_odom_body, points);
     }
@@ -76,7 +76,7 @@ class Runner {
     size_t scan = 0;
     forEachScan(options_.log, withLegs(), [&](const RecordedScan& recorded) {
       const SE3 T_map_body = mapPose(scan++);
-      for (const Eigen::Vector3f& p : pointsInBody(recorded.scan, recorded.T_body_lidar, filter_))
+      for (const Eigen::Vector3f& p : pointsInBody(recorded.scan, recorded.T_body_lidar, options_.filter))
         map.add(T_map_body * p.cast<double>());
     });
     writePlyPoints(options_.out_dir + "/map.ply", {map.points(), {}});
@@ -97,7 +97,6 @@ class Runner {
 
  private:
   const BaselineOptions& options_;
-  PointFilterConfig filter_;
   std::optional<ScanOdometry> odometry_;
   std::optional<KeyframeGraph> graph_;
   std::vector<ScanPose> poses_;

@@ -3,6 +3,11 @@
 #include <functional>
 #include <string>
 
+#include "tools/bench/baselines/keyframe_graph.h"
+#include "tools/bench/baselines/point_filter.h"
+#include "tools/bench/baselines/scan_odometry.h"
+#include "tools/bench/baselines/scan_registration.h"
+
 namespace sgraphs::bench {
 
 // What to compare with.
@@ -20,6 +25,11 @@ struct BaselineOptions {
   std::string log;
   std::string out_dir;
   Baseline baseline = Baseline::kGicp;
+  PointFilterConfig filter;
+  ScanOdometryConfig odometry;
+  GicpConfig gicp;
+  NdtConfig ndt;
+  KeyframeGraphConfig graph;
   bool with_legs = false;  // gicp, ndt: as the guess of the next match; graph: as its odometry
   std::function<void(double sensor_s, double wall_s)> on_progress;  // after each scan; may be empty
 };

@@ -19,9 +19,10 @@ class ScanRegistration {
   virtual ScanMatch align(const Points& source, const SE3& T_target_source_guess) = 0;
 };
 
-// Generalised ICP. Defaults are those of HDL-SLAM's scan matching.
+// Generalised ICP. Defaults are those of HDL-SLAM's scan matching but for the reach, which it has at 2 m: at
+// 0.5 m the error in small_office is half as large.
 struct GicpConfig {
-  double max_correspondence_m = 2.0;
+  double max_correspondence_m = 0.5;
   double epsilon = 0.01;  // of the transform, where iterations end
   int max_iterations = 64;
   int neighbours = 20;  // for a point's covariance
@@ -31,7 +32,7 @@ std::unique_ptr<ScanRegistration> makeGicp(const GicpConfig& config = {});
 // Normal distributions transform.
 struct NdtConfig {
   double resolution_m = 1.0;
-  double epsilon = 0.01;
+  double epsilon = 0.001;  // at HDL-SLAM's 0.01 PCL's NDT stops at its guess and drifts away by metres
   double step_m = 0.1;
   int max_iterations = 64;
 };
