@@ -67,6 +67,15 @@ void collect(const Source (&sources)[N], const std::string& path, std::map<std::
   }
 }
 
+// Means over nothing are no figures: a baseline's OUT has no graph.
+void dropEmptyNees(const std::string& eval_path, std::map<std::string, double>& figures) {
+  const Json json = parse(readFile(eval_path), eval_path);
+  const Json::json_pointer count("/nees_of_estimates/pose_translation/count");
+  if (json.contains(count) && json.at(count) != 0) return;
+  figures.erase("pose_nees_translation");
+  figures.erase("pose_nees_rotation");
+}
+
 }  // namespace
 
 std::optional<double> RunResult::figure(const std::string& name) const {
@@ -77,6 +86,7 @@ std::optional<double> RunResult::figure(const std::string& name) const {
 std::map<std::string, double> figuresOf(const std::string& out_dir) {
   std::map<std::string, double> figures;
   collect(kOfEval, out_dir + "/eval.json", figures);
+  dropEmptyNees(out_dir + "/eval.json", figures);
   collect(kOfSummary, out_dir + "/summary.json", figures);
   return figures;
 }

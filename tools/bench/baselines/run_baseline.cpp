@@ -111,7 +111,9 @@ std::string summaryOf(const BaselineOptions& options, const BaselineReport& repo
   json["with_legs"] = options.with_legs;
   json["duration_s"] = report.duration_s;
   json["wall_s"] = report.wall_s;
-  json["realtime_factor"] = report.wall_s > 0 ? report.duration_s / report.wall_s : 0.0;
+  // The legs' odometry is only copied: no pace of its own.
+  if (options.baseline != Baseline::kLegs)
+    json["realtime_factor"] = report.wall_s > 0 ? report.duration_s / report.wall_s : 0.0;
   json["peak_rss_mib"] = peakResidentMib();
   json["stages"]["scan"] = {
       {"p50_ms", report.scan_p50_ms}, {"p99_ms", report.scan_p99_ms}, {"count", report.scans}};

@@ -154,6 +154,18 @@ TEST_F(AccuracyBenchTest, AResultThatIsCutOffIsNamed) {
   }
 }
 
+TEST(FiguresTest, AMeanOverNoPosesIsNone) {
+  test::TempFolder out;
+  const auto withCount = [&](int count) {
+    writeFile(out / "summary.json", "{}");
+    writeFile(out / "eval.json", R"({"nees_of_estimates": {"pose_translation": {"mean": 2.5, "count": )" +
+                                     std::to_string(count) + "}}}");
+    return figuresOf(out.path());
+  };
+  EXPECT_FALSE(withCount(0).contains("pose_nees_translation"));
+  EXPECT_EQ(withCount(7).at("pose_nees_translation"), 2.5);
+}
+
 TEST(SceneDigestTest, ChangesWithThePlan) {
   test::TempFolder folder;
   const std::string plan = readFile(SGRAPHS_SOURCE_DIR "/config/scenes/two_rooms/plan.json");
