@@ -8,12 +8,12 @@
 namespace sgraphs::bench {
 namespace {
 
-// HDL-SLAM's rule from fitness to standard deviations.
+// HDL-SLAM's rule from fitness to standard deviations, with the ranges of S-Graphs' settings of 2022.
 constexpr double kFitnessGain = 20.0;
 constexpr double kFullFitness_m2 = 0.5;
 constexpr double kMinSigma_m = 0.1, kMaxSigma_m = 5.0;
 // Of the quaternion's vector part there, which is half an angle.
-constexpr double kMinSigma_rad = 2 * 0.05, kMaxSigma_rad = 2 * 0.2;
+constexpr double kMinSigma_rad = 2 * 0.1, kMaxSigma_rad = 2 * 0.4;
 
 double between(double min_sigma, double max_sigma, double share) {
   return min_sigma * min_sigma + (max_sigma * max_sigma - min_sigma * min_sigma) * share;

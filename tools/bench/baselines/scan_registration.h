@@ -19,8 +19,8 @@ class ScanRegistration {
   virtual ScanMatch align(const Points& source, const SE3& T_target_source_guess) = 0;
 };
 
-// Generalised ICP. Defaults are those of HDL-SLAM's scan matching but for the reach, which it has at 2 m: at
-// 0.5 m the error in small_office is half as large.
+// Generalised ICP. Reach and NDT's epsilon are the best of nine settings tried on one recording
+// (small_office, seed 1), one change at a time: ATE 0.05 m where HDL-SLAM's reach of 2 m gave 0.10 m.
 struct GicpConfig {
   double max_correspondence_m = 0.5;
   double epsilon = 0.01;  // of the transform, where iterations end
@@ -32,7 +32,7 @@ std::unique_ptr<ScanRegistration> makeGicp(const GicpConfig& config = {});
 // Normal distributions transform.
 struct NdtConfig {
   double resolution_m = 1.0;
-  double epsilon = 0.001;  // at HDL-SLAM's 0.01 PCL's NDT stops at its guess and drifts away by metres
+  double epsilon = 0.001;  // ATE 0.26 m where 0.01 gave 3.1 m
   double step_m = 0.1;
   int max_iterations = 64;
 };
