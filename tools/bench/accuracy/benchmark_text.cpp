@@ -113,8 +113,8 @@ std::string accuracySection(const std::vector<TableSpec>& tables, const std::vec
     text += "\n### " + table.title + "\n" + markdown(resultCells(table, results));
     if (const Cells printed = printedCells(table); !printed.empty())
       text += "\n" + printedCaption(table) +
-              " (S-Graphs+ paper, arXiv 2211.08754). Their scenes have the same names and purpose, "
-              "each name than behind ours:\n\n" +
+              " (S-Graphs+ paper, arXiv 2211.08754). Their buildings are "
+              "not those of the table above, whatever the names:\n\n" +
               markdown(printed);
   }
   text += "\n### All else that was measured\nMedians over the seeds.\n\n" +
