@@ -33,7 +33,7 @@ constexpr char kBaselines[] =
     "one "
     "after 0.5 m or 0.5 rad) from a guess by constant velocity. GICP's reach (0.5 m) and the change\nthat "
     "ends "
-    "NDT (0.001) are the best of nine settings tried, one change at a time, on small_office with seed 1; a "
+    "NDT (0.001) are the best of eleven settings tried, one change at a time, on small_office with seed 1; a "
     "thorough search may find\nbetter ones. HDL-SLAM turns points back only with an IMU, which is not "
     "recorded: no "
     "deskewing. The pose graph has a keyframe every 1 m or\n1 rad and GICP loops within 2 m, weighted by "
