@@ -15,6 +15,7 @@ void addSimulate(CLI::App& app);
 void addReplay(CLI::App& app);
 void addEval(CLI::App& app);
 void addLog(CLI::App& app);
+void addBench(CLI::App& app);
 void addReserved(CLI::App& app);
 
 }  // namespace sgraphs::cli

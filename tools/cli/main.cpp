@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   cli::addReplay(app);
   cli::addEval(app);
   cli::addLog(app);
+  cli::addBench(app);
   cli::addReserved(app);
   try {
     app.parse(argc, argv);
