@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perception/odometry/vote_balance.h"
+
 namespace sgraphs {
 namespace {
 
@@ -16,7 +18,11 @@ constexpr double kNormalFloor_rad = 0.01;
 constexpr double kOverFeigned = 10.0;
 // No direction is claimed to be known worse than this [1/m^2, 1/rad^2]; it keeps inverses finite.
 constexpr double kLeastInformation = 1.0;
-constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
+constexpr double kThing_m = 0.5;  // radius, seen from above, of what may move as a whole: somebody, a trolley
+constexpr double kThingShare = 0.3;  // of what all else says
+constexpr int kMaxThings = 3;
+constexpr size_t kCentres = 30;  // cells that are tried as a thing's middle
+constexpr size_t kBlock = 256;   // patches per partial sum; fixed, so that sums do not depend on the threads
 
 using Upper = Eigen::Matrix<double, 6, 6>;
 
@@ -59,12 +65,19 @@ struct Pieces {
   std::vector<Vector6d> twist;
 };
 
+// The body at the firing of a patch.
+SE3 poseOf(const Surfel& s, const ScanMotion& motion, const Pieces& pieces) {
+  const auto [knot, share] = motion.placeOf(s.time_us);
+  return motion.T_odom_body[knot] * se3Exp(share * pieces.twist[knot]);
+}
+
 // Residual and weight of one match: r = n . (T p - mu), its derivative by the right perturbation of T being
 // [R^T n; p x R^T n] (translation, rotation).
-void addPatch(const Surfel& s, const ScanMotion& motion, const Pieces& pieces, const SurfelMap& map,
-              const RegistrationConfig& config, double gate_m, double min_cos, Sums& sums) {
+void addPatch(const Surfel& s, double factor, const ScanMotion& motion, const Pieces& pieces,
+              const SurfelMap& map, const RegistrationConfig& config, double gate_m, double min_cos,
+              Sums& sums) {
   const auto [knot, share] = motion.placeOf(s.time_us);
-  const SE3 T = motion.T_odom_body[knot] * se3Exp(share * pieces.twist[knot]);
+  const SE3 T = poseOf(s, motion, pieces);
   const Eigen::Vector3d point = T * s.mean;
   const MapCell* cell = map.match(point, T.rotation * s.normal, gate_m, min_cos);
   if (!cell) return;
@@ -75,7 +88,7 @@ void addPatch(const Surfel& s, const ScanMotion& motion, const Pieces& pieces, c
                           cell->tilt_variance * (offset.squaredNorm() - r * r) +
                           config.sigma_floor_m * config.sigma_floor_m;
   const double width2 = config.robust_width * config.robust_width * variance;
-  const double weight = 1.0 / (variance * (1.0 + r * r / width2));
+  const double weight = factor / (variance * (1.0 + r * r / width2));
   const Eigen::Vector3d m = T.rotation.conjugate() * cell->normal;
   Vector6d J;
   J << m, s.mean.cross(m);
@@ -102,8 +115,30 @@ void addPatch(const Surfel& s, const ScanMotion& motion, const Pieces& pieces, c
   }
 }
 
-Sums sumPatches(const std::vector<Surfel>& surfels, const ScanMotion& motion, const SurfelMap& map,
-                const RegistrationConfig& config, double gate_m, int threads) {
+// How much each patch counts, judged at the guess.
+std::vector<double> balance(const std::vector<Surfel>& surfels, const ScanMotion& motion,
+                            const SurfelMap& map, const RegistrationConfig& config, int threads) {
+  const Pieces pieces(motion);
+  const double min_cos = std::cos(config.max_normal_angle_rad);
+  std::vector<PatchVote> votes(surfels.size());
+  const auto find = [&](size_t i) {
+    const Surfel& s = surfels[i];
+    const SE3 T = poseOf(s, motion, pieces);
+    const MapCell* cell = map.match(T * s.mean, T.rotation * s.normal, config.gate_m, min_cos);
+    if (!cell) return;
+    const double floor2 = config.sigma_floor_m * config.sigma_floor_m;
+    votes[i] = {cell, 1.0 / (s.variance_m2 + cell->variance_m2 + floor2)};
+  };
+  if (threads > 1)
+    tbb::parallel_for(size_t{0}, surfels.size(), find);
+  else
+    for (size_t i = 0; i < surfels.size(); ++i) find(i);
+  return balanceVotes(votes);
+}
+
+Sums sumPatches(const std::vector<Surfel>& surfels, const std::vector<double>& factors,
+                const ScanMotion& motion, const SurfelMap& map, const RegistrationConfig& config,
+                double gate_m, int threads) {
   const size_t knots = motion.T_odom_body.size();
   const size_t blocks = (surfels.size() + kBlock - 1) / kBlock;
   const Pieces pieces(motion);
@@ -112,7 +147,7 @@ Sums sumPatches(const std::vector<Surfel>& surfels, const ScanMotion& motion, co
   const auto work = [&](size_t block) {
     const size_t end = std::min(surfels.size(), (block + 1) * kBlock);
     for (size_t i = block * kBlock; i < end; ++i)
-      addPatch(surfels[i], motion, pieces, map, config, gate_m, min_cos, partial[block]);
+      addPatch(surfels[i], factors[i], motion, pieces, map, config, gate_m, min_cos, partial[block]);
   };
   if (threads > 1)
     tbb::parallel_for(size_t{0}, blocks, work);
@@ -250,10 +285,11 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
   const auto size = static_cast<Eigen::Index>(6 * knots);
   const SE3 begin = motion.T_odom_body.front();
   Eigen::MatrixXd H(size, size), honest(size, size);
+  const std::vector<double> factors = balance(surfels, motion, map, config, threads);
   for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
     // Far matches help only while the guess is far off.
     const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
-    const Sums sums = sumPatches(surfels, motion, map, config, gate_m, threads);
+    const Sums sums = sumPatches(surfels, factors, motion, map, config, gate_m, threads);
     H.setZero();
     Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
     fillNormalEquations(sums, H, g);
@@ -287,10 +323,12 @@ RegistrationResult registerRigid(const std::vector<Surfel>& surfels, const Surfe
                                  int threads, SE3& T_target_source) {
   RegistrationResult result;
   const SE3 guess = T_target_source;
+  const std::vector<double> factors =
+      balance(surfels, {Time{0}, Time{1}, {guess, guess}}, map, config, threads);
   for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
     const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
     ScanMotion still{Time{0}, Time{1}, {T_target_source, T_target_source}};
-    const Sums sums = sumPatches(surfels, still, map, config, gate_m, threads);
+    const Sums sums = sumPatches(surfels, factors, still, map, config, gate_m, threads);
     const Matrix6d H = sums.rigid + prior_information;
     // Both knots hold the same pose, and their gradients add up to that of one rigid pose.
     const Vector6d g =

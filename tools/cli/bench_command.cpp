@@ -15,7 +15,7 @@
 #include "tools/bench/accuracy/result_tables.h"
 #include "tools/bench/baselines/run_baseline.h"
 #include "tools/cli/commands.h"
-#include "tools/simulate/scene/scene_file.h"
+#include "tools/simulate/scene/find_scene.h"
 
 namespace sgraphs::cli {
 namespace {

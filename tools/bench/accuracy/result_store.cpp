@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/sha256.h"
 #include "common/io/text_file.h"
+#include "tools/simulate/scene/find_scene.h"
 #include "tools/simulate/scene/scene_file.h"
 
 namespace sgraphs::bench {

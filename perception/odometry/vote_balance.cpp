@@ -1,0 +1,102 @@
+#include "perception/odometry/vote_balance.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace sgraphs {
+namespace {
+
+constexpr double kThing_m = 0.5;     // radius, seen from above, of what may move as a whole
+constexpr double kThingShare = 0.3;  // of what all else brings
+constexpr int kMaxThings = 3;
+constexpr size_t kCentres = 30;  // cells that are tried as a thing's middle
+
+// What a cell brings through all patches that meet it, along one direction.
+struct CellVote {
+  const MapCell* cell;
+  double information = 0;
+  double factor = 1;
+
+  double brings() const { return factor * information; }
+};
+
+// The cells that are met, in their order within the map.
+std::vector<CellVote> cellsOf(const std::vector<PatchVote>& votes) {
+  std::vector<const MapCell*> cells;
+  for (const PatchVote& vote : votes)
+    if (vote.cell) cells.push_back(vote.cell);
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::vector<CellVote> out;
+  out.reserve(cells.size());
+  for (const MapCell* cell : cells) out.push_back({cell});
+  return out;
+}
+
+CellVote& voteOf(const MapCell* cell, std::vector<CellVote>& cells) {
+  return *std::lower_bound(cells.begin(), cells.end(), cell,
+                           [](const CellVote& vote, const MapCell* to) { return vote.cell < to; });
+}
+
+Eigen::Vector2d weakestDirection(const std::vector<PatchVote>& votes) {
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  for (const PatchVote& vote : votes) {
+    if (!vote.cell) continue;
+    const Eigen::Vector2d n = vote.cell->normal.head<2>();
+    information += vote.weight * n * n.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(information).eigenvectors().col(0);
+}
+
+bool together(const CellVote& a, const CellVote& b) {
+  return (a.cell->mean - b.cell->mean).head<2>().squaredNorm() < kThing_m * kThing_m;
+}
+
+std::vector<CellVote> strongestOf(std::vector<CellVote> cells, size_t count) {
+  std::stable_sort(cells.begin(), cells.end(),
+                   [](const CellVote& a, const CellVote& b) { return a.information > b.information; });
+  cells.resize(std::min(cells.size(), count));
+  return cells;
+}
+
+// Cuts the strongest thing to its share; false if there is none to cut.
+bool cutStrongest(const std::vector<CellVote>& centres, std::vector<CellVote>& cells) {
+  double total = 0, strongest = 0;
+  const CellVote* centre = nullptr;
+  for (const CellVote& cell : cells) total += cell.brings();
+  for (const CellVote& candidate : centres) {
+    double own = 0;
+    for (const CellVote& cell : cells)
+      if (together(cell, candidate)) own += cell.brings();
+    if (own <= strongest) continue;
+    strongest = own;
+    centre = &candidate;
+  }
+  const double allowed = kThingShare * (total - strongest);
+  // Nothing else speaks: then the one thing is better than none.
+  if (!centre || strongest <= allowed || allowed <= 0) return false;
+  for (CellVote& cell : cells)
+    if (together(cell, *centre)) cell.factor *= allowed / strongest;
+  return true;
+}
+
+}  // namespace
+
+std::vector<double> balanceVotes(const std::vector<PatchVote>& votes) {
+  const Eigen::Vector2d weak = weakestDirection(votes);
+  std::vector<CellVote> cells = cellsOf(votes);
+  for (const PatchVote& vote : votes) {
+    if (!vote.cell) continue;
+    const double along = vote.cell->normal.head<2>().dot(weak);
+    voteOf(vote.cell, cells).information += vote.weight * along * along;
+  }
+  const std::vector<CellVote> centres = strongestOf(cells, kCentres);
+  for (int thing = 0; thing < kMaxThings; ++thing)
+    if (!cutStrongest(centres, cells)) break;
+  std::vector<double> factors(votes.size(), 1.0);
+  for (size_t i = 0; i < votes.size(); ++i)
+    if (votes[i].cell) factors[i] = voteOf(votes[i].cell, cells).factor;
+  return factors;
+}
+
+}  // namespace sgraphs
