@@ -38,14 +38,15 @@ CellVote& voteOf(const MapCell* cell, std::vector<CellVote>& cells) {
                            [](const CellVote& vote, const MapCell* to) { return vote.cell < to; });
 }
 
-Eigen::Vector2d weakestDirection(const std::vector<PatchVote>& votes) {
+// The horizontal directions that the scan knows best and worst, as columns.
+Eigen::Matrix2d principalDirections(const std::vector<PatchVote>& votes) {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   for (const PatchVote& vote : votes) {
     if (!vote.cell) continue;
     const Eigen::Vector2d n = vote.cell->normal.head<2>();
     information += vote.weight * n * n.transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(information).eigenvectors().col(0);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(information).eigenvectors();
 }
 
 bool together(const CellVote& a, const CellVote& b) {
@@ -83,19 +84,22 @@ bool cutStrongest(const std::vector<CellVote>& centres, std::vector<CellVote>& c
 }  // namespace
 
 std::vector<double> balanceVotes(const std::vector<PatchVote>& votes) {
-  const Eigen::Vector2d weak = weakestDirection(votes);
-  std::vector<CellVote> cells = cellsOf(votes);
-  for (const PatchVote& vote : votes) {
-    if (!vote.cell) continue;
-    const double along = vote.cell->normal.head<2>().dot(weak);
-    voteOf(vote.cell, cells).information += vote.weight * along * along;
-  }
-  const std::vector<CellVote> centres = strongestOf(cells, kCentres);
-  for (int thing = 0; thing < kMaxThings; ++thing)
-    if (!cutStrongest(centres, cells)) break;
+  const Eigen::Matrix2d directions = principalDirections(votes);
+  const std::vector<CellVote> met = cellsOf(votes);
   std::vector<double> factors(votes.size(), 1.0);
-  for (size_t i = 0; i < votes.size(); ++i)
-    if (votes[i].cell) factors[i] = voteOf(votes[i].cell, cells).factor;
+  for (int k = 0; k < 2; ++k) {
+    std::vector<CellVote> cells = met;
+    for (const PatchVote& vote : votes) {
+      if (!vote.cell) continue;
+      const double along = vote.cell->normal.head<2>().dot(directions.col(k));
+      voteOf(vote.cell, cells).information += vote.weight * along * along;
+    }
+    const std::vector<CellVote> centres = strongestOf(cells, kCentres);
+    for (int thing = 0; thing < kMaxThings; ++thing)
+      if (!cutStrongest(centres, cells)) break;
+    for (size_t i = 0; i < votes.size(); ++i)
+      if (votes[i].cell) factors[i] = std::min(factors[i], voteOf(votes[i].cell, cells).factor);
+  }
   return factors;
 }
 

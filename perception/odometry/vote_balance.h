@@ -12,12 +12,12 @@ struct PatchVote {
   double weight = 0;
 };
 
-// A factor of at most 1 for each vote. Along the horizontal direction that the scan knows worst, no single
-// thing may bring most of what is known: somebody who stands close by outweighs the far ends of a corridor
-// tenfold, and takes the robot along when he walks off. What lies within half a metre of each other, seen
-// from above, is one thing; it is cut to 0.3 of what all else brings, the strongest of at most three first.
-// Where many things speak, all factors are 1. The map's z axis is up; all cells
-// belong to one map.
+// A factor of at most 1 for each vote. Along neither of the two horizontal directions that the scan knows
+// best and worst may a single thing bring most of what is known: somebody who stands close by outweighs the
+// far ends of a corridor tenfold, and takes the robot along when he walks off. What lies within half a metre
+// of each other, seen from above, is one thing; it is cut to 0.3 of what all else brings, the strongest of at
+// most three first. Where many things speak, all factors are 1. The map's z axis is up; all cells belong to
+// one map.
 std::vector<double> balanceVotes(const std::vector<PatchVote>& votes);
 
 }  // namespace sgraphs

@@ -24,7 +24,9 @@ namespace sgraphs::simulate {
 namespace {
 
 std::string scratch(const std::string& name) {
-  return testing::TempDir() + "/simulate_" + name;
+  // Tests run side by side: each has its own files.
+  return testing::TempDir() + "/simulate_" + testing::UnitTest::GetInstance()->current_test_info()->name() +
+         "_" + name;
 }
 
 // A walk of two seconds in the two rooms.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -10,7 +11,11 @@
 namespace sgraphs::simulate {
 
 inline std::string writeMeshFile(const std::string& name, const std::string& text) {
-  const std::string path = testing::TempDir() + "/" + name;
+  // Tests run side by side: each has its own folder.
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const std::string folder = testing::TempDir() + "/" + test->test_suite_name() + "_" + test->name();
+  std::filesystem::create_directories(folder);
+  const std::string path = folder + "/" + name;
   std::ofstream(path) << text;
   return path;
 }
