@@ -241,7 +241,8 @@ TEST(SimulateTest, MeshIsWalkedThroughAndBecomesTheTruth) {
   options.truth_dir = scratch("of_mesh_truth");
   const SimulateResult result = simulate(options);
   EXPECT_GT(result.packets, 500);
-  EXPECT_EQ(result.building, "simulate_room (mesh of 12 triangles)");
+  EXPECT_EQ(result.building,
+            std::filesystem::path(options.scene).stem().string() + " (mesh of 12 triangles)");
   EXPECT_NEAR(readTum(options.truth_dir + "/gt.tum").front().pose.translation.z(), 0.52, 0.02);
   EXPECT_GT(std::filesystem::file_size(options.truth_dir + "/mesh.ply"), 300u);
 }
