@@ -18,11 +18,7 @@ constexpr double kNormalFloor_rad = 0.01;
 constexpr double kOverFeigned = 10.0;
 // No direction is claimed to be known worse than this [1/m^2, 1/rad^2]; it keeps inverses finite.
 constexpr double kLeastInformation = 1.0;
-constexpr double kThing_m = 0.5;  // radius, seen from above, of what may move as a whole: somebody, a trolley
-constexpr double kThingShare = 0.3;  // of what all else says
-constexpr int kMaxThings = 3;
-constexpr size_t kCentres = 30;  // cells that are tried as a thing's middle
-constexpr size_t kBlock = 256;   // patches per partial sum; fixed, so that sums do not depend on the threads
+constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
 
 using Upper = Eigen::Matrix<double, 6, 6>;
 
@@ -65,10 +61,16 @@ struct Pieces {
   std::vector<Vector6d> twist;
 };
 
-// The body at the firing of a patch.
-SE3 poseOf(const Surfel& s, const ScanMotion& motion, const Pieces& pieces) {
-  const auto [knot, share] = motion.placeOf(s.time_us);
-  return motion.T_odom_body[knot] * se3Exp(share * pieces.twist[knot]);
+SE3 poseAt(const ScanMotion::Place& place, const ScanMotion& motion, const Pieces& pieces) {
+  return motion.T_odom_body[place.knot] * se3Exp(place.share * pieces.twist[place.knot]);
+}
+
+template <typename Work>
+void forEach(size_t count, int threads, const Work& work) {
+  if (threads > 1)
+    tbb::parallel_for(size_t{0}, count, work);
+  else
+    for (size_t i = 0; i < count; ++i) work(i);
 }
 
 // Residual and weight of one match: r = n . (T p - mu), its derivative by the right perturbation of T being
@@ -77,7 +79,7 @@ void addPatch(const Surfel& s, double factor, const ScanMotion& motion, const Pi
               const SurfelMap& map, const RegistrationConfig& config, double gate_m, double min_cos,
               Sums& sums) {
   const auto [knot, share] = motion.placeOf(s.time_us);
-  const SE3 T = poseOf(s, motion, pieces);
+  const SE3 T = poseAt({knot, share}, motion, pieces);
   const Eigen::Vector3d point = T * s.mean;
   const MapCell* cell = map.match(point, T.rotation * s.normal, gate_m, min_cos);
   if (!cell) return;
@@ -123,16 +125,13 @@ std::vector<double> balance(const std::vector<Surfel>& surfels, const ScanMotion
   std::vector<PatchVote> votes(surfels.size());
   const auto find = [&](size_t i) {
     const Surfel& s = surfels[i];
-    const SE3 T = poseOf(s, motion, pieces);
+    const SE3 T = poseAt(motion.placeOf(s.time_us), motion, pieces);
     const MapCell* cell = map.match(T * s.mean, T.rotation * s.normal, config.gate_m, min_cos);
     if (!cell) return;
     const double floor2 = config.sigma_floor_m * config.sigma_floor_m;
     votes[i] = {cell, 1.0 / (s.variance_m2 + cell->variance_m2 + floor2)};
   };
-  if (threads > 1)
-    tbb::parallel_for(size_t{0}, surfels.size(), find);
-  else
-    for (size_t i = 0; i < surfels.size(); ++i) find(i);
+  forEach(surfels.size(), threads, find);
   return balanceVotes(votes);
 }
 
@@ -149,10 +148,7 @@ Sums sumPatches(const std::vector<Surfel>& surfels, const std::vector<double>& f
     for (size_t i = block * kBlock; i < end; ++i)
       addPatch(surfels[i], factors[i], motion, pieces, map, config, gate_m, min_cos, partial[block]);
   };
-  if (threads > 1)
-    tbb::parallel_for(size_t{0}, blocks, work);
-  else
-    for (size_t block = 0; block < blocks; ++block) work(block);
+  forEach(blocks, threads, work);
   Sums total(knots);
   for (const Sums& sums : partial) total.add(sums);
   return total;

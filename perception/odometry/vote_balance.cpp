@@ -20,22 +20,25 @@ struct CellVote {
   double brings() const { return factor * information; }
 };
 
-// The cells that are met, in their order within the map.
-std::vector<CellVote> cellsOf(const std::vector<PatchVote>& votes) {
+// The cells that are met, in their order within the map, and which of them each vote meets.
+struct Met {
+  std::vector<CellVote> cells;
+  std::vector<size_t> of_vote;  // void where the vote meets nothing
+};
+
+Met cellsOf(const std::vector<PatchVote>& votes) {
   std::vector<const MapCell*> cells;
   for (const PatchVote& vote : votes)
     if (vote.cell) cells.push_back(vote.cell);
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  std::vector<CellVote> out;
-  out.reserve(cells.size());
-  for (const MapCell* cell : cells) out.push_back({cell});
-  return out;
-}
-
-CellVote& voteOf(const MapCell* cell, std::vector<CellVote>& cells) {
-  return *std::lower_bound(cells.begin(), cells.end(), cell,
-                           [](const CellVote& vote, const MapCell* to) { return vote.cell < to; });
+  Met met;
+  for (const MapCell* cell : cells) met.cells.push_back({cell});
+  for (const PatchVote& vote : votes) {
+    const auto found = std::lower_bound(cells.begin(), cells.end(), vote.cell);
+    met.of_vote.push_back(static_cast<size_t>(found - cells.begin()));
+  }
+  return met;
 }
 
 // The horizontal directions that the scan knows best and worst, as columns.
@@ -85,20 +88,20 @@ bool cutStrongest(const std::vector<CellVote>& centres, std::vector<CellVote>& c
 
 std::vector<double> balanceVotes(const std::vector<PatchVote>& votes) {
   const Eigen::Matrix2d directions = principalDirections(votes);
-  const std::vector<CellVote> met = cellsOf(votes);
+  const Met met = cellsOf(votes);
   std::vector<double> factors(votes.size(), 1.0);
   for (int k = 0; k < 2; ++k) {
-    std::vector<CellVote> cells = met;
-    for (const PatchVote& vote : votes) {
-      if (!vote.cell) continue;
-      const double along = vote.cell->normal.head<2>().dot(directions.col(k));
-      voteOf(vote.cell, cells).information += vote.weight * along * along;
+    std::vector<CellVote> cells = met.cells;
+    for (size_t i = 0; i < votes.size(); ++i) {
+      if (!votes[i].cell) continue;
+      const double along = votes[i].cell->normal.head<2>().dot(directions.col(k));
+      cells[met.of_vote[i]].information += votes[i].weight * along * along;
     }
     const std::vector<CellVote> centres = strongestOf(cells, kCentres);
     for (int thing = 0; thing < kMaxThings; ++thing)
       if (!cutStrongest(centres, cells)) break;
     for (size_t i = 0; i < votes.size(); ++i)
-      if (votes[i].cell) factors[i] = std::min(factors[i], voteOf(votes[i].cell, cells).factor);
+      if (votes[i].cell) factors[i] = std::min(factors[i], cells[met.of_vote[i]].factor);
   }
   return factors;
 }
