@@ -12,18 +12,22 @@
 
 namespace sgraphs {
 
-// What joined a round. Rooms and loops become further members.
+// What joined a round. Loops become a further member.
 struct RoundInput {
   int64_t round = 0;
   Time time;
   std::optional<Keyframe> keyframe;  // none: an idle round
   std::optional<KeyframePlanes> planes =
       {};  // of that keyframe; none: the layer is off, or the message was lost
+  // Made of an earlier round's map; none: the layer is off, the first round, or the message was lost.
+  std::shared_ptr<const FreeSpace> free_space = {};
+  std::optional<Rooms> rooms = {};
 };
 
 struct RoundOutput {
   std::vector<KeyframeId> changed;  // keyframes that moved by more than the configured step, and the new one
   std::vector<PlaneId> changed_planes;  // likewise, with those that were merged away
+  bool changed_rooms = false;           // rooms, doorways or floors came, went or moved
   SE3 T_map_odom;
   Matrix6d keyframe_covariance = Matrix6d::Identity();  // newest keyframe in map, conservative
   std::string graph_digest;

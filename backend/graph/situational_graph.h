@@ -8,8 +8,10 @@
 #include "common/base/ids.h"
 #include "common/base/time.h"
 #include "common/geometry/se3.h"
+#include "common/types/free_space.h"
 #include "common/types/keyframe.h"
 #include "common/types/plane.h"
+#include "common/types/rooms.h"
 
 namespace sgraphs {
 
@@ -57,7 +59,14 @@ struct FloorNode {
   double z_m = 0;  // height of the walking surface in map
 };
 
-// A measurement that binds nodes. Rooms and floors add their own factor lists beside these.
+// A room, an arm of a corridor. What does not follow from its centre is as it was last observed.
+struct RoomNode {
+  RoomId id;
+  RoomObservation seen;
+  Eigen::Vector2d center_map = Eigen::Vector2d::Zero();  // state
+};
+
+// A measurement that binds nodes.
 struct RelativePoseFactor {
   int64_t id = 0;  // monotonic over all kinds of factors
   RelativePose measurement;
@@ -100,13 +109,15 @@ struct SameHeightFactor {
   double sigma_m = 0;
 };
 
-// The layers and what binds them: plain data in ordered containers; rooms join as further maps of nodes
-// and lists of factors. Only the backend changes it.
+// The layers and what binds them: plain data in ordered containers. Only the backend changes it.
 struct SituationalGraph {
   std::map<KeyframeId, KeyframeNode> keyframes;
   std::map<PlaneId, PlaneNode> planes;
   std::map<PlaneId, PlaneId> merged_planes;  // planes that were found to be another, and where they live on
+  std::map<RoomId, RoomNode> rooms;
+  std::map<PassageId, Doorway> doorways;
   std::map<FloorId, FloorNode> floors;
+  std::shared_ptr<const FreeSpace> free_space;        // as last observed; null: none yet
   Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  // state on the unit sphere
 
   std::vector<RelativePoseFactor> relative_poses;

@@ -21,5 +21,8 @@ using KeyframeId = Id<'k'>;
 using PlaneId = Id<'w'>;
 using RoomId = Id<'r'>;
 using FloorId = Id<'f'>;
+using VertexId = Id<'p'>;   // of free space
+using ClusterId = Id<'c'>;  // of free space
+using PassageId = Id<'d'>;  // doorways and other passages between clusters
 
 }  // namespace sgraphs
