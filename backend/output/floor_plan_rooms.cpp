@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "backend/output/floor_plan.h"
+
+namespace sgraphs {
+namespace {
+
+constexpr double kLabelStep_m = 0.25;
+constexpr int kMaxLabelSteps = 200;  // along the longer side
+
+using Outline = std::vector<Eigen::Vector2d>;
+
+bool isInside(const Outline& outline, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+    const Eigen::Vector2d &a = outline[i], &b = outline[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
+}
+
+double distanceToOutline(const Outline& outline, const Eigen::Vector2d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+    const Eigen::Vector2d along = outline[i] - outline[j];
+    const double length2 = along.squaredNorm();
+    const double s = length2 > 0 ? std::clamp((p - outline[j]).dot(along) / length2, 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, (p - outline[j] - s * along).norm());
+  }
+  return nearest;
+}
+
+// Where a name has most room: the raster point inside that is farthest from the outline; of equals, the one
+// nearest to the middle.
+void placeLabel(FloorPlan::Room& room) {
+  Eigen::Vector2d low = room.polygon.front(), high = low;
+  for (const Eigen::Vector2d& corner : room.polygon) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const double step = std::max(kLabelStep_m, (high - low).maxCoeff() / kMaxLabelSteps);
+  const Eigen::Vector2d middle = 0.5 * (low + high);
+  double best = -std::numeric_limits<double>::infinity();
+  for (double y = low.y() + 0.5 * step; y < high.y(); y += step)
+    for (double x = low.x() + 0.5 * step; x < high.x(); x += step) {
+      const Eigen::Vector2d p(x, y);
+      if (!isInside(room.polygon, p)) continue;
+      const double free = distanceToOutline(room.polygon, p);
+      const double rank = std::min(free, 1.0) - 0.01 * (p - middle).norm();
+      if (rank <= best) continue;
+      best = rank;
+      room.label_at = p;
+      room.room_for_label_m = free;
+    }
+}
+
+}  // namespace
+
+std::vector<FloorPlan::Room> planRooms(const SituationalGraph& graph, FloorId floor) {
+  std::vector<FloorPlan::Room> rooms;
+  for (const auto& [id, node] : graph.rooms) {
+    if (node.seen.floor != floor || node.seen.polygon.size() < 3) continue;
+    FloorPlan::Room room;
+    room.id = id;
+    for (const RoomCorner& corner : node.seen.polygon) room.polygon.push_back(corner.position_map);
+    room.area_m2 = node.seen.area_m2;
+    room.corridor = node.seen.kind == RoomKind::kInfinite;
+    placeLabel(room);
+    rooms.push_back(std::move(room));
+  }
+  return rooms;
+}
+
+std::vector<FloorPlan::Door> planDoors(const SituationalGraph& graph, FloorId floor) {
+  std::vector<FloorPlan::Door> doors;
+  for (const auto& [id, doorway] : graph.doorways) {
+    if (doorway.floor != floor) continue;
+    FloorPlan::Door door{doorway.position_map.head<2>(), doorway.position_map.head<2>(), doorway.width_m};
+    // The doorway lies where its passage does; its width is drawn along the passage.
+    Eigen::Vector2d along(1, 0);
+    if (graph.free_space)
+      if (const auto passage = graph.free_space->passages.find(id);
+          passage != graph.free_space->passages.end()) {
+        const Eigen::Vector2f across = passage->second.right_map - passage->second.left_map;
+        if (across.norm() > 0) along = across.cast<double>().normalized();
+      }
+    door.left -= 0.5 * doorway.width_m * along;
+    door.right += 0.5 * doorway.width_m * along;
+    doors.push_back(door);
+  }
+  return doors;
+}
+
+}  // namespace sgraphs
