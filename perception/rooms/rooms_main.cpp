@@ -1,3 +1,4 @@
+#include "common/base/error.h"
 #include "common/bus/lcm_bus.h"
 #include "tools/system/process.h"
 #include "tools/system/stages.h"
