@@ -232,13 +232,14 @@ std::optional<Keyframe> BackendNode::joinedKeyframe(const OdometryEstimate* esti
 
 void BackendNode::runRound(RoundInput input, const RoundJoiner::Joined& joined) {
   const Time time = input.time;
+  const bool idle = !input.keyframe;
   if (mode_ == RoundJoiner::Mode::kLive) publishSchedule(input, joined);
   const Stopwatch watch;
   newest_round_ = core_.step(std::move(input));
   latency_.add(watch.elapsedUs());
   last_round_ = time;
   const int64_t round = rounds_++;
-  for (graph_update_t& m : updateMessages(core_.graph(), newest_round_, round, time))
+  for (graph_update_t& m : updateMessages(core_.graph(), newest_round_, round, time, idle))
     publisher_.send(channels::kGraphUpdate, m);
   map_to_odom_t map_to_odom{};
   map_to_odom.header.utime = time.us;

@@ -2,7 +2,9 @@
 
 #include <set>
 #include <stdexcept>
+#include <utility>
 
+#include "lcmtypes/convert/chunks.h"
 #include "lcmtypes/convert/convert.h"
 
 namespace sgraphs {
@@ -25,6 +27,16 @@ graph_node_t toMessage(const FloorNode& node) {
   const double z_m = node.has_height ? node.z_m : 0.0;
   m.T_map_node =
       toMessage(SE3(Eigen::Quaterniond::Identity(), {node.center_map.x(), node.center_map.y(), z_m}));
+  return m;
+}
+
+graph_node_t toMessage(const RoomNode& node) {
+  graph_node_t m{};
+  m.layer = graph_node_t::ROOMS;
+  m.id = node.id.value;
+  m.floor = node.seen.floor.value;
+  m.T_map_node =
+      toMessage(SE3(Eigen::Quaterniond::Identity(), {node.center_map.x(), node.center_map.y(), 0}));
   return m;
 }
 
@@ -64,86 +76,62 @@ graph_plane_t planeMessage(const SituationalGraph& graph, PlaneId id) {
   return toMessage(merged);
 }
 
-// Fills message after message up to the bytes of a datagram.
-class Chunks {
- public:
-  explicit Chunks(const graph_update_t& head) : head_(head) { begin(); }
-
-  void add(const graph_node_t& node) {
-    makeRoom(node.getEncodedSize());
-    chunks_.back().nodes.push_back(node);
-  }
-  void add(const graph_plane_t& plane) {
-    makeRoom(plane.getEncodedSize());
-    chunks_.back().planes.push_back(plane);
-  }
-
-  std::vector<graph_update_t> finish() {
-    for (size_t i = 0; i < chunks_.size(); ++i) {
-      graph_update_t& m = chunks_[i];
-      m.chunk = static_cast<int32_t>(i);
-      m.num_chunks = static_cast<int32_t>(chunks_.size());
-      m.num_nodes = static_cast<int32_t>(m.nodes.size());
-      m.num_planes = static_cast<int32_t>(m.planes.size());
-    }
-    return std::move(chunks_);
-  }
-
- private:
-  void begin() {
-    chunks_.push_back(head_);
-    bytes_ = head_.getEncodedSize();
-  }
-  // A member's encoded size counts its fingerprint, which is not sent inside a message: the sum errs upwards.
-  void makeRoom(int bytes) {
-    if (bytes_ + bytes > kMaxGraphMessageBytes) begin();
-    bytes_ += bytes;
-  }
-
-  graph_update_t head_;
-  std::vector<graph_update_t> chunks_;
-  int bytes_ = 0;
-};
-
-graph_update_t headOf(const SituationalGraph& graph, const RoundOutput& output, int64_t round, Time time) {
+graph_update_t headOf(const SituationalGraph& graph, const RoundOutput& output, int64_t round, Time time,
+                      bool idle) {
   graph_update_t m{};
   m.header.utime = time.us;
   m.round = round;
   m.keyframe = graph.keyframes.empty() ? -1 : graph.keyframes.rbegin()->first.value;
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c) m.keyframe_covariance[6 * r + c] = output.keyframe_covariance(r, c);
+  m.idle = idle;
   m.graph_digest = output.graph_digest;
   return m;
+}
+
+using Chunks = ChunkFiller<graph_update_t>;
+
+std::vector<graph_update_t> finished(Chunks chunks) {
+  return chunks.finish([](graph_update_t& m) {
+    m.num_nodes = static_cast<int32_t>(m.nodes.size());
+    m.num_planes = static_cast<int32_t>(m.planes.size());
+  });
+}
+
+void addUpperLayers(const SituationalGraph& graph, Chunks& chunks) {
+  for (const auto& [id, node] : graph.rooms) chunks.add(&graph_update_t::nodes, toMessage(node));
+  for (const auto& [id, node] : graph.floors) chunks.add(&graph_update_t::nodes, toMessage(node));
 }
 
 }  // namespace
 
 std::vector<graph_update_t> updateMessages(const SituationalGraph& graph, const RoundOutput& output,
-                                           int64_t round, Time time) {
-  Chunks chunks(headOf(graph, output, round, time));
+                                           int64_t round, Time time, bool idle) {
+  Chunks chunks(headOf(graph, output, round, time, idle));
   for (const KeyframeId id : output.changed) {
     const auto node = graph.keyframes.find(id);
     if (node == graph.keyframes.end())
       throw std::logic_error("graph messages: keyframe " + id.str() + " changed, but is not there");
-    chunks.add(toMessage(node->second));
+    chunks.add(&graph_update_t::nodes, toMessage(node->second));
   }
+  if (output.changed_rooms) addUpperLayers(graph, chunks);
   const std::set<PlaneId> changed(output.changed_planes.begin(), output.changed_planes.end());
-  for (const PlaneId id : changed) chunks.add(planeMessage(graph, id));
-  return chunks.finish();
+  for (const PlaneId id : changed) chunks.add(&graph_update_t::planes, planeMessage(graph, id));
+  return finished(std::move(chunks));
 }
 
 std::vector<graph_update_t> snapshotMessages(const SituationalGraph& graph, const RoundOutput& newest,
                                              int64_t round, Time time) {
-  graph_update_t head = headOf(graph, newest, round, time);
+  graph_update_t head = headOf(graph, newest, round, time, false);
   head.complete = 1;
   Chunks chunks(head);
-  for (const auto& [id, node] : graph.keyframes) chunks.add(toMessage(node));
-  for (const auto& [id, node] : graph.floors) chunks.add(toMessage(node));
+  for (const auto& [id, node] : graph.keyframes) chunks.add(&graph_update_t::nodes, toMessage(node));
+  addUpperLayers(graph, chunks);
   std::set<PlaneId> planes;
   for (const auto& [id, node] : graph.planes) planes.insert(id);
   for (const auto& [id, into] : graph.merged_planes) planes.insert(id);
-  for (const PlaneId id : planes) chunks.add(planeMessage(graph, id));
-  return chunks.finish();
+  for (const PlaneId id : planes) chunks.add(&graph_update_t::planes, planeMessage(graph, id));
+  return finished(std::move(chunks));
 }
 
 }  // namespace sgraphs

@@ -9,14 +9,12 @@
 
 namespace sgraphs {
 
-// Most bytes of a message, so that it stays one datagram.
-inline constexpr int kMaxGraphMessageBytes = 60000;
-
-// GRAPH_UPDATE of a round: the keyframes and planes that it changed, in chunks that fit one datagram. A plane
-// that was merged away says which living plane it is now. Throws std::logic_error for a changed node that the
+// GRAPH_UPDATE of a round: the keyframes and planes that it changed, and all rooms and floors if any of them
+// changed, in chunks that fit one datagram. A plane that was merged away says which living plane it is now.
+// `idle`: the round had no keyframe. Throws std::logic_error for a changed node that the
 // graph does not know.
 std::vector<graph_update_t> updateMessages(const SituationalGraph& graph, const RoundOutput& output,
-                                           int64_t round, Time time);
+                                           int64_t round, Time time, bool idle);
 
 // GRAPH_SNAPSHOT: every node, and where each merged plane lives on.
 std::vector<graph_update_t> snapshotMessages(const SituationalGraph& graph, const RoundOutput& newest,

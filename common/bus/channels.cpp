@@ -20,6 +20,8 @@ constexpr std::array kTable{
     Row{"ODOMETRY_END", "stream_end_t", "sgraphs-odometry", "once", false},
     Row{"KEYFRAME_PLANES", "keyframe_planes_t", "sgraphs-planes", "per keyframe", false},
     Row{"PLANES_END", "stream_end_t", "sgraphs-planes", "once", false},
+    Row{"FREE_SPACE", "free_space_t", "sgraphs-free-space", "per round, chunks", false},
+    Row{"ROOMS", "rooms_t", "sgraphs-rooms", "per round, chunks", false},
     Row{"GRAPH_UPDATE", "graph_update_t", "sgraphs-backend", "per round", false},
     Row{"GRAPH_SNAPSHOT", "graph_update_t", "sgraphs-backend", "every 50 rounds", false},
     Row{"MAP_TO_ODOM", "map_to_odom_t", "sgraphs-backend", "per round", false},
@@ -27,6 +29,8 @@ constexpr std::array kTable{
     Row{"RUN_RESULT", "run_result_t", "sgraphs-backend", "once", false},
     Row{"STATUS_ODOMETRY", "status_t", "sgraphs-odometry", "1 Hz", false},
     Row{"STATUS_PLANES", "status_t", "sgraphs-planes", "1 Hz", false},
+    Row{"STATUS_FREE_SPACE", "status_t", "sgraphs-free-space", "1 Hz", false},
+    Row{"STATUS_ROOMS", "status_t", "sgraphs-rooms", "1 Hz", false},
     Row{"STATUS_BACKEND", "status_t", "sgraphs-backend", "1 Hz", false},
 };
 

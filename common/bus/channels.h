@@ -3,6 +3,7 @@
 #include <span>
 
 #include "common/bus/bus.h"
+#include "sgraphs/free_space_t.hpp"
 #include "sgraphs/graph_update_t.hpp"
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
@@ -10,6 +11,7 @@
 #include "sgraphs/map_to_odom_t.hpp"
 #include "sgraphs/odometry_t.hpp"
 #include "sgraphs/pose_t.hpp"
+#include "sgraphs/rooms_t.hpp"
 #include "sgraphs/round_schedule_t.hpp"
 #include "sgraphs/run_result_t.hpp"
 #include "sgraphs/session_t.hpp"
@@ -35,6 +37,8 @@ inline constexpr Channel<keyframe_t> kKeyframe{"KEYFRAME"};
 inline constexpr Channel<keyframe_planes_t> kKeyframePlanes{"KEYFRAME_PLANES"};
 inline constexpr Channel<stream_end_t> kOdometryEnd{"ODOMETRY_END"};
 inline constexpr Channel<stream_end_t> kPlanesEnd{"PLANES_END"};
+inline constexpr Channel<free_space_t> kFreeSpace{"FREE_SPACE"};
+inline constexpr Channel<rooms_t> kRooms{"ROOMS"};
 inline constexpr Channel<graph_update_t> kGraphUpdate{"GRAPH_UPDATE"};
 inline constexpr Channel<graph_update_t> kGraphSnapshot{"GRAPH_SNAPSHOT"};
 inline constexpr Channel<map_to_odom_t> kMapToOdom{"MAP_TO_ODOM"};
@@ -42,6 +46,8 @@ inline constexpr Channel<pose_t> kPose{"POSE"};
 inline constexpr Channel<run_result_t> kRunResult{"RUN_RESULT"};
 inline constexpr Channel<status_t> kStatusOdometry{"STATUS_ODOMETRY"};
 inline constexpr Channel<status_t> kStatusPlanes{"STATUS_PLANES"};
+inline constexpr Channel<status_t> kStatusFreeSpace{"STATUS_FREE_SPACE"};
+inline constexpr Channel<status_t> kStatusRooms{"STATUS_ROOMS"};
 inline constexpr Channel<status_t> kStatusBackend{"STATUS_BACKEND"};
 
 // One row per channel: the README shows this table and a test compares the two.

@@ -1,4 +1,5 @@
 #include "backend/graph_messages.h"
+#include "lcmtypes/convert/chunks.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ RoundOutput outputOf(std::vector<PlaneId> planes) {
 
 TEST(GraphMessagesTest, AnUpdateCarriesWhatTheRoundChanged) {
   const SituationalGraph graph = roomGraph();
-  const auto messages = test::throughBytes(updateMessages(graph, outputOf({{4}, {1}}), 7, kTime));
+  const auto messages = test::throughBytes(updateMessages(graph, outputOf({{4}, {1}}), 7, kTime, false));
   ASSERT_EQ(messages.size(), 1u);
   const graph_update_t& m = messages[0];
   EXPECT_EQ(m.round, 7);
@@ -56,7 +57,7 @@ TEST(GraphMessagesTest, AnUpdateCarriesWhatTheRoundChanged) {
 
 TEST(GraphMessagesTest, APlaneArrivesAsItIsInTheGraph) {
   const SituationalGraph graph = roomGraph();
-  const auto messages = test::throughBytes(updateMessages(graph, outputOf({{3}}), 0, kTime));
+  const auto messages = test::throughBytes(updateMessages(graph, outputOf({{3}}), 0, kTime, false));
   const auto read = fromMessage(messages.at(0).planes.at(0));
   ASSERT_TRUE(read);
   const PlaneNode& plane = graph.planes.at({3});
@@ -77,7 +78,7 @@ TEST(GraphMessagesTest, AMergedPlaneNamesTheOneThatStandsAtTheEndOfItsMerges) {
   graph.planes.erase({5});
   graph.planes.erase({4});
   graph.merged_planes = {{{5}, {4}}, {{4}, {2}}};
-  const auto messages = test::throughBytes(updateMessages(graph, outputOf({{5}, {2}}), 0, kTime));
+  const auto messages = test::throughBytes(updateMessages(graph, outputOf({{5}, {2}}), 0, kTime, false));
   ASSERT_EQ(messages.at(0).num_planes, 2);
   const auto merged = fromMessage(messages[0].planes[1]);
   ASSERT_TRUE(merged);
@@ -87,22 +88,22 @@ TEST(GraphMessagesTest, AMergedPlaneNamesTheOneThatStandsAtTheEndOfItsMerges) {
 
 TEST(GraphMessagesTest, APlaneThatIsNowhereIsAnError) {
   const SituationalGraph graph = roomGraph();
-  EXPECT_THROW(updateMessages(graph, outputOf({{77}}), 0, kTime), std::logic_error);
+  EXPECT_THROW(updateMessages(graph, outputOf({{77}}), 0, kTime, false), std::logic_error);
   SituationalGraph circle = roomGraph();
   circle.merged_planes = {{{8}, {9}}, {{9}, {8}}};
-  EXPECT_THROW(updateMessages(circle, outputOf({{8}}), 0, kTime), std::logic_error);
+  EXPECT_THROW(updateMessages(circle, outputOf({{8}}), 0, kTime, false), std::logic_error);
 }
 
 TEST(GraphMessagesTest, ASnapshotHoldsEveryNodeOnceInDatagrams) {
   SituationalGraph graph = largeGraph(400, 48);
   graph.merged_planes = {{{50}, {1}}};
-  const auto messages = test::throughBytes(snapshotMessages(graph, outputOf({}), 9, kTime));
+  const auto messages = test::throughBytes(snapshotMessages(graph, outputOf({}), 9, kTime, false));
   ASSERT_GT(messages.size(), 4u);
   std::vector<int64_t> keyframes, planes;
   int floors = 0;
   for (size_t i = 0; i < messages.size(); ++i) {
     const graph_update_t& m = messages[i];
-    EXPECT_LE(m.getEncodedSize(), kMaxGraphMessageBytes);
+    EXPECT_LE(m.getEncodedSize(), kMaxRecordsBytes);
     EXPECT_EQ(m.complete, 1);
     EXPECT_EQ(m.chunk, static_cast<int32_t>(i));
     EXPECT_EQ(m.num_chunks, static_cast<int32_t>(messages.size()));
@@ -122,13 +123,13 @@ TEST(GraphMessagesTest, ASnapshotHoldsEveryNodeOnceInDatagrams) {
 TEST(GraphMessagesTest, TheLargestPlaneStillFitsADatagram) {
   const SituationalGraph graph = largeGraph(3, kMaxMapPlaneCorners);
   for (const graph_update_t& m : snapshotMessages(graph, outputOf({}), 0, kTime))
-    EXPECT_LE(m.getEncodedSize(), kMaxGraphMessageBytes);
+    EXPECT_LE(m.getEncodedSize(), kMaxRecordsBytes);
   EXPECT_THROW(snapshotMessages(largeGraph(1, kMaxMapPlaneCorners + 1), outputOf({}), 0, kTime),
                std::logic_error);
 }
 
 TEST(GraphMessagesTest, AnEmptyRoundIsOneEmptyMessage) {
-  const auto messages = updateMessages(SituationalGraph{}, RoundOutput{}, 0, kTime);
+  const auto messages = updateMessages(SituationalGraph{}, RoundOutput{}, 0, kTime, false);
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0].keyframe, -1);
   EXPECT_EQ(messages[0].num_nodes, 0);

@@ -10,6 +10,11 @@
 #include <sstream>
 #include <string>
 
+#include "sgraphs/doorway_t.hpp"
+#include "sgraphs/floor_t.hpp"
+#include "sgraphs/free_space_cluster_t.hpp"
+#include "sgraphs/free_space_t.hpp"
+#include "sgraphs/free_space_vertex_t.hpp"
 #include "sgraphs/graph_node_t.hpp"
 #include "sgraphs/graph_plane_t.hpp"
 #include "sgraphs/graph_update_t.hpp"
@@ -19,9 +24,12 @@
 #include "sgraphs/lidar_points_t.hpp"
 #include "sgraphs/map_to_odom_t.hpp"
 #include "sgraphs/odometry_t.hpp"
+#include "sgraphs/passage_t.hpp"
 #include "sgraphs/plane_t.hpp"
 #include "sgraphs/pose_t.hpp"
 #include "sgraphs/relative_pose_t.hpp"
+#include "sgraphs/room_t.hpp"
+#include "sgraphs/rooms_t.hpp"
 #include "sgraphs/round_schedule_t.hpp"
 #include "sgraphs/run_result_t.hpp"
 #include "sgraphs/session_t.hpp"
@@ -47,10 +55,11 @@ std::map<std::string, std::string> fingerprints() {
 }
 
 std::map<std::string, std::string> built() {
-  return fingerprints<graph_node_t, graph_plane_t, graph_update_t, header_t, keyframe_planes_t, keyframe_t,
-                      lidar_points_t, map_to_odom_t, odometry_t, plane_t, pose_t, relative_pose_t,
-                      round_schedule_t, run_result_t, session_t, spot_odometry_t, status_t, stream_end_t,
-                      transform_t, velodyne_packets_t>();
+  return fingerprints<doorway_t, floor_t, free_space_cluster_t, free_space_t, free_space_vertex_t,
+                      graph_node_t, graph_plane_t, graph_update_t, header_t, keyframe_planes_t, keyframe_t,
+                      lidar_points_t, map_to_odom_t, odometry_t, passage_t, plane_t, pose_t, relative_pose_t,
+                      room_t, rooms_t, round_schedule_t, run_result_t, session_t, spot_odometry_t, status_t,
+                      stream_end_t, transform_t, velodyne_packets_t>();
 }
 
 std::map<std::string, std::string> locked() {

@@ -13,7 +13,7 @@ namespace sgraphs::cli {
 namespace {
 
 struct Arguments {
-  std::string log, out_dir, config_file, map_dir, odometry, layers = "floors";
+  std::string log, out_dir, config_file, map_dir, record, odometry, layers = "floors";
   std::vector<std::string> assignments;
   int threads = 0;
 };
@@ -57,7 +57,7 @@ std::vector<std::string> stagesOf(const Arguments& arguments) {
 void run(const Arguments& arguments, bool layers_given) {
   if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
   ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry, stagesOf(arguments),
-                        progressLine()};
+                        progressLine(), arguments.record};
   if (layers_given && (arguments.layers == "rooms" || arguments.layers == "floors"))
     std::fprintf(stderr,
                  "sgraphs: warning: --layers %s: this version fills the layers keyframes and walls only\n",
@@ -98,6 +98,8 @@ void addReplay(CLI::App& app) {
                             ->capture_default_str();
   command->add_option("--map", arguments->map_dir,
                       "Result of an earlier run to continue (not in this version)");
+  command->add_option("--record", arguments->record,
+                      "Log that everything said on the bus is written to, for lcm-spy and lcm-logplayer");
   command->callback([arguments, layers] { run(*arguments, layers->count() > 0); });
 }
 

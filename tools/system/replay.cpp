@@ -14,7 +14,17 @@ Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
   odometry_.emplace(bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
   planes_.emplace(bus_, makePlanesStep(options_.config));
   backend_.emplace(bus_, makeBackendCore(options_.config));
+  if (!options_.record.empty()) startRecording();
   inspect();
+}
+
+// What a recorder on the bus of the real processes would see.
+void Replay::startRecording() {
+  recording_ = std::make_unique<LogWriter>(options_.record);
+  for (const channels::Row& row : channels::table())
+    bus_.subscribe(row.name, [this, channel = std::string(row.name)](Bus::Bytes bytes) {
+      recording_->write(now_us_, channel, bytes);
+    });
 }
 
 // One pass over the log before the run: it must be one of ours, and a recorded schedule must be known before
@@ -49,6 +59,7 @@ void Replay::inspect() {
 }
 
 void Replay::feed(const LogEvent& event) {
+  now_us_ = std::max(now_us_, event.timestamp_us);
   bus_.publish(event.channel, event.bytes);
   bus_.dispatch(0);
 }
@@ -90,6 +101,7 @@ void Replay::run() {
                         "' belong to no event and were skipped");
   if (!odometry_->done()) endWithoutStreamEnd();
   wall_s_ = watch.elapsedSeconds();
+  if (recording_) recording_->close();
   requireScans();
   for (const auto& [kind, n] : odometry_->oddities()) warnings_.push_back(std::to_string(n) + " " + kind);
   if (const std::string refused = describeRefused(*counts_); !refused.empty())

@@ -25,7 +25,8 @@ struct ReplayOptions {
   SystemConfig config;
   std::string odometry;                  // "lidar", "encoder", "fused"; empty: as SESSION says
   std::vector<std::string> stages = {};  // that take part, in place of SESSION's; empty: as SESSION says
-  std::function<void(const ReplayProgress&)> on_progress;  // after each event; may be empty
+  std::function<void(const ReplayProgress&)> on_progress = {};  // after each event; may be empty
+  std::string record = {};  // log that every channel is written to, raw and derived; empty: none
 };
 
 // All stages in one process, fed from a log in file order through its raw channels alone. The nodes are those
@@ -45,6 +46,7 @@ class Replay {
 
  private:
   void inspect();
+  void startRecording();
   void feed(const LogEvent& event);
   void feedSession(session_t session);
   void endWithoutStreamEnd();
@@ -56,6 +58,8 @@ class Replay {
   std::optional<OdometryNode> odometry_;
   std::optional<PlanesNode> planes_;
   std::optional<BackendNode> backend_;
+  std::unique_ptr<LogWriter> recording_;
+  int64_t now_us_ = 0;  // receive time of the event that is being worked on
   std::vector<std::string> warnings_;
   std::string input_digest_;
   double wall_s_ = 0;
