@@ -10,7 +10,7 @@ struct EvidenceConfig {
   double cell_m = 0.1;
   double max_range_m = 12.0;
   double misses_per_hit = 1.5;
-  double misses_per_wall_hit = 8.0;
+  double misses_per_wall_hit = 25.0;
   double min_wall_length_m = 1.5;
   double min_wall_top_m = 1.0;
   double max_island_m = 1.5;
@@ -27,7 +27,7 @@ struct EvidenceConfig {
             "The same on a mapped wall: glass is seen from in front only, and through from the side");
     v.field("min_wall_length_m", min_wall_length_m, 0.1, 10.0, "A mapped plane of this length is a wall");
     v.field("min_wall_top_m", min_wall_top_m, 0.1, 5.0,
-            "A wall is seen up to this height over the walking surface: desks end below");
+            "A wall counts where it was seen at this height over the walking surface: desks end below");
     v.field("max_island_m", max_island_m, 0.0, 10.0,
             "What stands free and is no larger (a column, a person) does not divide rooms");
     v.field("reach_m", reach_m, 0.5, 20.0, "Clearance is computed up to this distance");

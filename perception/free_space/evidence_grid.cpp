@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 namespace sgraphs {
 namespace {
@@ -11,6 +12,12 @@ namespace {
 constexpr int kFirstUpperSlice = 5;
 constexpr unsigned kAll = (1u << kNumSlices) - 1;
 constexpr unsigned kUpper = kAll & ~((1u << kFirstUpperSlice) - 1);
+
+constexpr int kTrail = 3;  // hits on a wall per hit beside it, at most, where somebody walked through
+
+int numHits(const ColumnVotes& votes) {
+  return std::accumulate(votes.hits.begin(), votes.hits.end(), 0);
+}
 
 int floorDiv(int a, int b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
@@ -30,9 +37,9 @@ void vote(ColumnVotes& column, unsigned hits, unsigned misses, bool walked, int 
 
 }  // namespace
 
-ColumnState classify(const ColumnVotes& votes, const EvidenceConfig& config) {
+ColumnState classify(const ColumnVotes& votes, bool is_pane, const EvidenceConfig& config) {
   if (votes.walked > 0) return {CellState::kFree, CellState::kFree, false};
-  const double misses_per_hit = votes.walls > 0 ? config.misses_per_wall_hit : config.misses_per_hit;
+  const double misses_per_hit = is_pane ? config.misses_per_wall_hit : config.misses_per_hit;
   unsigned occupied = 0, free = 0;
   for (int i = 0; i < kNumSlices; ++i) {
     const auto slice = static_cast<size_t>(i);
@@ -103,6 +110,26 @@ ColumnVotes EvidenceGrid::at(int x, int y) const {
   const Block* block = find(key);
   if (!block) return {};
   return (*block)[static_cast<size_t>((y - key.first * kBlock) * kBlock + x - key.second * kBlock)];
+}
+
+// Somebody walked through a wall here, so there is a door: what was hit on the wall was hit on both sides of
+// it, too. A pane has nothing in front of it.
+bool EvidenceGrid::isTrail(int x, int y, const ColumnVotes& votes) const {
+  constexpr std::array<std::array<int, 2>, 8> kDirections{
+      {{4, 0}, {4, 2}, {3, 3}, {2, 4}, {0, 4}, {-2, 4}, {-3, 3}, {-4, 2}}};
+  auto hitsBeside = [&](int dx, int dy) {
+    const ColumnVotes beside = at(x + dx, y + dy);
+    return beside.walls > 0 ? 0 : numHits(beside);
+  };
+  for (const auto& [dx, dy] : kDirections)
+    if (kTrail * std::min(hitsBeside(dx, dy), hitsBeside(-dx, -dy)) >= numHits(votes)) return true;
+  return false;
+}
+
+ColumnState EvidenceGrid::state(int x, int y, const ColumnVotes& votes, const EvidenceConfig& config) const {
+  const ColumnState plain = classify(votes, false, config);
+  const bool asks = votes.walls > 0 && plain.rooms == CellState::kFree && numHits(votes) > 0;
+  return asks && !isTrail(x, y, votes) ? classify(votes, true, config) : plain;
 }
 
 }  // namespace sgraphs

@@ -30,12 +30,14 @@ struct ColumnState {
   bool on_wall = false;                        // an obstacle of a mapped wall
 };
 
-ColumnState classify(const ColumnVotes& votes, const EvidenceConfig& config);
+// `is_pane`: the column lies on a mapped wall that rays may pass, so few hits weigh much.
+ColumnState classify(const ColumnVotes& votes, bool is_pane, const EvidenceConfig& config);
 
 // Evidence of one storey: columns in hashed blocks, which exist where anything was seen.
 class EvidenceGrid {
  public:
   static constexpr int kBlock = 16;      // columns along an edge
+  static constexpr int kNeighbours = 4;  // columns
   using BlockKey = std::pair<int, int>;  // y, x [blocks]
   using Block = std::array<ColumnVotes, kBlock * kBlock>;
 
@@ -48,6 +50,8 @@ class EvidenceGrid {
 
   const Block* find(BlockKey key) const;
   ColumnVotes at(int x, int y) const;
+  // The column as it looks among its neighbours, up to kNeighbours columns away.
+  ColumnState state(int x, int y, const ColumnVotes& votes, const EvidenceConfig& config) const;
   size_t numBlocks() const { return blocks_.size(); }
   size_t bytes() const { return blocks_.size() * (sizeof(Block) + 64); }
 
@@ -60,6 +64,7 @@ class EvidenceGrid {
     }
   };
   Block& touch(BlockKey key);
+  bool isTrail(int x, int y, const ColumnVotes& votes) const;
 
   std::unordered_map<BlockKey, std::unique_ptr<Block>, Hash> blocks_;  // looked up, never iterated
   std::set<BlockKey> changed_;

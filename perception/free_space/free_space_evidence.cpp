@@ -92,20 +92,32 @@ void FreeSpaceEvidence::settle(KeyframeId id) {
 }
 
 void FreeSpaceEvidence::moveWall(const MapPlane& plane) {
-  std::optional<WallLine> line = wallLine(plane, config_);
-  if (line) {
-    StoreyMap& map = storey(line->floor);
-    if (!map.knowsSurface() || line->top_z_m < map.surface_z_m() + config_.min_wall_top_m) line.reset();
-  }
+  std::optional<WallTrace> trace;
+  const auto map = storeys_.find(plane.floor);
+  if (map != storeys_.end() && map->second.knowsSurface())
+    trace = wallTrace(plane, map->second.surface_z_m() + config_.min_wall_top_m, config_);
   const auto it = walls_.find(plane.id);
   if (it != walls_.end()) {
-    if (line && line->near(it->second, 0.25 * config_.cell_m)) return;
+    if (trace && trace->near(it->second, 0.25 * config_.cell_m)) return;
     storey(it->second.floor).addWall(it->second, -1);
     walls_.erase(it);
   }
-  if (!line) return;
-  storey(line->floor).addWall(*line, +1);
-  walls_.emplace(plane.id, *line);
+  if (!trace) return;
+  storey(trace->floor).addWall(*trace, +1);
+  walls_.emplace(plane.id, std::move(*trace));
+}
+
+void FreeSpaceEvidence::moveWalls(const std::vector<MapPlane>& planes) {
+  std::map<PlaneId, MapPlane> moved;
+  moved.swap(waiting_walls_);
+  for (const MapPlane& plane : planes) moved.insert_or_assign(plane.id, plane);
+  for (const auto& [id, plane] : moved) {
+    const auto map = storeys_.find(plane.floor);
+    const bool waits = plane.floor.valid() && !plane.merged_into.valid() &&
+                       (map == storeys_.end() || !map->second.knowsSurface());
+    if (waits) waiting_walls_.emplace(id, plane);
+    moveWall(plane);
+  }
 }
 
 std::vector<FloorId> FreeSpaceEvidence::step(const std::optional<Keyframe>& keyframe,
@@ -118,7 +130,7 @@ std::vector<FloorId> FreeSpaceEvidence::step(const std::optional<Keyframe>& keyf
     it->second.floor = k.floor;
     settle(k.id);
   }
-  for (const MapPlane& plane : update.planes) moveWall(plane);
+  moveWalls(update.planes);
   std::vector<FloorId> changed;
   for (auto& [floor, map] : storeys_)
     if (map.refresh()) changed.push_back(floor);

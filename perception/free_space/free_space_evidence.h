@@ -46,6 +46,7 @@ class FreeSpaceEvidence {
   bool hasMoved(const KeyframeState& state) const;
   void thinPlace(const Place& place);
   void moveWall(const MapPlane& plane);
+  void moveWalls(const std::vector<MapPlane>& planes);
   StoreyMap& storey(FloorId floor);
 
   EvidenceConfig config_;
@@ -55,7 +56,8 @@ class FreeSpaceEvidence {
   std::optional<double> last_height_m_;
   std::map<KeyframeId, KeyframeState> views_;
   std::map<Place, std::set<KeyframeId>> places_;
-  std::map<PlaneId, WallLine> walls_;  // as they were added
+  std::map<PlaneId, MapPlane> waiting_walls_;  // of storeys whose walking surface is not known yet
+  std::map<PlaneId, WallTrace> walls_;         // as they were added
   std::map<FloorId, StoreyMap> storeys_;
 };
 

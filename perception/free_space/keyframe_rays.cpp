@@ -6,7 +6,7 @@
 namespace sgraphs {
 namespace {
 
-constexpr float kGroup_m = 0.4f;   // viewpoints nearer than this see the same
+constexpr float kGroup_m = 0.6f;   // viewpoints nearer than this see the same
 constexpr size_t kMaxGroups = 16;  // later viewpoints join the last
 constexpr float kMargin_m = 3.0f;  // body to viewpoint, at most
 constexpr float kLowest_m = -2.0f;

@@ -91,7 +91,7 @@ void RayCaster::passThrough(const Eigen::Vector3f& from, const Eigen::Vector3f& 
   auto index = static_cast<std::ptrdiff_t>(view_.index(cell_x, cell_y));
   const auto cells = static_cast<std::ptrdiff_t>(view_.misses.size());
   while (t < t_end && index >= 0 && index < cells) {
-    const float t_next = std::min({next_x, next_y, t_end});
+    const float t_next = std::min(std::min(next_x, next_y), t_end);
     if (t_next - t > min_chord) {
       const auto slice = static_cast<int>(from.z() + 0.5f * (t + t_next) * direction.z());
       view_.misses[static_cast<size_t>(index)] |=

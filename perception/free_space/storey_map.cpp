@@ -27,6 +27,16 @@ std::vector<T> moved(const std::vector<T>& old, const CellBox& from, const CellB
   return out;
 }
 
+// A column's state depends on its neighbours.
+std::set<EvidenceGrid::BlockKey> withNeighbours(const std::set<EvidenceGrid::BlockKey>& blocks) {
+  static_assert(EvidenceGrid::kNeighbours <= kBlock);
+  std::set<EvidenceGrid::BlockKey> all;
+  for (const auto& [by, bx] : blocks)
+    for (int y = by - 1; y <= by + 1; ++y)
+      for (int x = bx - 1; x <= bx + 1; ++x) all.insert(all.end(), {y, x});
+  return all;
+}
+
 }  // namespace
 
 StoreyMap::StoreyMap(FloorId floor, const EvidenceConfig& config) : config_(config) {
@@ -40,8 +50,9 @@ void StoreyMap::add(const KeyframeView& view, double surface_z_m, int sign) {
   num_views_ += sign;
 }
 
-void StoreyMap::addWall(const WallLine& line, int sign) {
-  for (const auto& [x, y] : wallCells(line, config_.cell_m)) evidence_.addWall(x, y, sign);
+void StoreyMap::addWall(const WallTrace& trace, int sign) {
+  for (const WallTrace::Piece& piece : trace.pieces)
+    for (const auto& [x, y] : wallCells(piece, config_.cell_m)) evidence_.addWall(x, y, sign);
 }
 
 double StoreyMap::surface_z_m() const {
@@ -89,10 +100,11 @@ void StoreyMap::classifyBlock(EvidenceGrid::BlockKey key, CellBox& rooms_changed
                               CellBox& navigation_changed) {
   const EvidenceGrid::Block* block = evidence_.find(key);
   for (int i = 0; i < kBlock * kBlock; ++i) {
-    const int x = key.second * kBlock + i % kBlock - cells_.x0,
-              y = key.first * kBlock + i / kBlock - cells_.y0;
+    const int map_x = key.second * kBlock + i % kBlock, map_y = key.first * kBlock + i / kBlock;
+    const int x = map_x - cells_.x0, y = map_y - cells_.y0;
     const size_t index = rooms_.index(x, y);
-    const ColumnState state = block ? classify((*block)[static_cast<size_t>(i)], config_) : ColumnState{};
+    const ColumnState state =
+        block ? evidence_.state(map_x, map_y, (*block)[static_cast<size_t>(i)], config_) : ColumnState{};
     const auto on_wall = static_cast<uint8_t>(state.on_wall);
     if (raw_rooms_[index] != state.rooms || on_wall_[index] != on_wall) rooms_changed.include(x, y);
     if (raw_navigation_[index] != state.navigation) navigation_changed.include(x, y);
@@ -104,7 +116,7 @@ void StoreyMap::classifyBlock(EvidenceGrid::BlockKey key, CellBox& rooms_changed
 
 bool StoreyMap::refresh() {
   rooms_.surface_z_m = navigation_.surface_z_m = surface_z_m();
-  const std::set<EvidenceGrid::BlockKey> blocks = evidence_.takeChanged();
+  const std::set<EvidenceGrid::BlockKey> blocks = withNeighbours(evidence_.takeChanged());
   grow(blocks);
   CellBox rooms_changed, navigation_changed;
   for (const EvidenceGrid::BlockKey& key : blocks) classifyBlock(key, rooms_changed, navigation_changed);

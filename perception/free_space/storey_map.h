@@ -15,7 +15,7 @@ class StoreyMap {
 
   // A keyframe's view with the height of the walking surface it stands on: added (sign 1) or taken back (-1).
   void add(const KeyframeView& view, double surface_z_m, int sign);
-  void addWall(const WallLine& line, int sign);
+  void addWall(const WallTrace& trace, int sign);
 
   // Brings grids and clearance up to date with the evidence. True if a cell of either grid changed.
   bool refresh();

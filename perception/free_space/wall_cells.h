@@ -9,21 +9,23 @@
 
 namespace sgraphs {
 
-// A mapped wall seen from above: a line with a normal.
-struct WallLine {
+// A mapped wall seen from above, where it stands at a given height: pieces of a line.
+struct WallTrace {
+  struct Piece {
+    Eigen::Vector2d a_map = Eigen::Vector2d::Zero(), b_map = Eigen::Vector2d::Zero();
+  };
   FloorId floor;
-  Eigen::Vector2d a_map = Eigen::Vector2d::Zero();
-  Eigen::Vector2d b_map = Eigen::Vector2d::Zero();
-  double top_z_m = 0;
+  std::vector<Piece> pieces;
 
-  // Nearer than a fraction of a cell, so that casting it again would change next to nothing.
-  bool near(const WallLine& other, double tolerance_m) const;
+  // No end lies farther from its counterpart: casting it again would change next to nothing.
+  bool near(const WallTrace& other, double tolerance_m) const;
 };
 
-// The plane's line if it is vertical and as long as a wall; nothing for floors, columns, furniture.
-std::optional<WallLine> wallLine(const MapPlane& plane, const EvidenceConfig& config);
+// The plane's trace at height z if it is vertical and as long as a wall; nothing for floors, columns,
+// furniture.
+std::optional<WallTrace> wallTrace(const MapPlane& plane, double z_m, const EvidenceConfig& config);
 
-// Cells (x, y) whose centre lies within 1.2 cells of the line, in order.
-std::vector<std::pair<int, int>> wallCells(const WallLine& line, double cell_m);
+// Cells (x, y) whose centre lies within 1.2 cells of the piece, in order.
+std::vector<std::pair<int, int>> wallCells(const WallTrace::Piece& piece, double cell_m);
 
 }  // namespace sgraphs
