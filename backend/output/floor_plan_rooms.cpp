@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "backend/output/floor_plan.h"
+#include "common/geometry/convex_polygon.h"
 
 namespace sgraphs {
 namespace {
@@ -10,27 +11,10 @@ namespace {
 constexpr double kLabelStep_m = 0.25;
 constexpr int kMaxLabelSteps = 200;  // along the longer side
 
-using Outline = std::vector<Eigen::Vector2d>;
-
-bool isInside(const Outline& outline, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-    const Eigen::Vector2d &a = outline[i], &b = outline[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return inside;
-}
-
-double distanceToOutline(const Outline& outline, const Eigen::Vector2d& p) {
+double distanceToOutline(const Polygon2d& outline, const Eigen::Vector2d& p) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-    const Eigen::Vector2d along = outline[i] - outline[j];
-    const double length2 = along.squaredNorm();
-    const double s = length2 > 0 ? std::clamp((p - outline[j]).dot(along) / length2, 0.0, 1.0) : 0.0;
-    nearest = std::min(nearest, (p - outline[j] - s * along).norm());
-  }
+  for (size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++)
+    nearest = std::min(nearest, distanceToSegment(p, outline[j], outline[i]));
   return nearest;
 }
 
@@ -48,7 +32,7 @@ void placeLabel(FloorPlan::Room& room) {
   for (double y = low.y() + 0.5 * step; y < high.y(); y += step)
     for (double x = low.x() + 0.5 * step; x < high.x(); x += step) {
       const Eigen::Vector2d p(x, y);
-      if (!isInside(room.polygon, p)) continue;
+      if (!contains(room.polygon, p)) continue;
       const double free = distanceToOutline(room.polygon, p);
       const double rank = std::min(free, 1.0) - 0.01 * (p - middle).norm();
       if (rank <= best) continue;

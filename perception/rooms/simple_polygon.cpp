@@ -21,18 +21,6 @@ Polygon2d clipped(const Polygon2d& polygon, const Eigen::Vector2d& normal, doubl
   return kept;
 }
 
-// Crossings of a ray towards +x.
-bool contains(const Polygon2d& polygon, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if (a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()) > p.x()) inside = !inside;
-  }
-  return inside;
-}
-
 double distanceTo(const Polygon2d& polygon, const Eigen::Vector2d& p) {
   if (contains(polygon, p)) return 0;
   double least = std::numeric_limits<double>::infinity();

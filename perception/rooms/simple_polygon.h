@@ -13,8 +13,6 @@ namespace sgraphs {
 // area along the line, so that areas are right.
 Polygon2d clipped(const Polygon2d& polygon, const Eigen::Vector2d& normal, double d);
 
-bool contains(const Polygon2d& polygon, const Eigen::Vector2d& p);
-
 // Distance to the outline; 0 inside.
 double distanceTo(const Polygon2d& polygon, const Eigen::Vector2d& p);
 
