@@ -14,8 +14,6 @@ constexpr double kMinBelow_m = 0.15,
 constexpr double kGuessBelow_m = 0.5;
 constexpr double kSameSurface_m = 0.3;   // planes this far from the median are platforms or furniture
 constexpr double kParallel_cos = 0.985;  // 10 degrees
-// Walls count if they fill a part of the height between knees and head.
-constexpr double kBottom_m = 0.3, kTop_m = 1.8, kMinInBand_m = 0.3;
 
 struct Level {
   double z_m, area_m2;
@@ -102,14 +100,6 @@ Eigen::Vector2d centerOf(const std::vector<Wall>& walls) {
 }
 
 }  // namespace
-
-bool StoreyBand::holds(const Wall& wall) const {
-  return std::min(top_z_m, wall.top_z_m) - std::max(bottom_z_m, wall.bottom_z_m) >= kMinInBand_m;
-}
-
-StoreyBand bandAbove(double surface_z_m) {
-  return {surface_z_m + kBottom_m, surface_z_m + kTop_m};
-}
 
 double surfaceOf(const FloorObservation& floor, const StoreyTracker& storeys) {
   if (floor.has_height) return floor.z_m;

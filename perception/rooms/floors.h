@@ -4,17 +4,10 @@
 
 #include "common/types/rooms.h"
 #include "perception/rooms/storey_tracker.h"
+#include "perception/rooms/wall_candidates.h"
 #include "perception/rooms/wall_map.h"
 
 namespace sgraphs {
-
-// Heights between which a storey's walls stand [m, in map].
-struct StoreyBand {
-  double bottom_z_m = 0, top_z_m = 0;
-
-  bool holds(const Wall& wall) const;
-};
-StoreyBand bandAbove(double surface_z_m);
 
 // The storeys with their heights, from the level planes under the path, and their centres, from their walls.
 // Where no plane was seen, the height follows from the body's above storeys whose planes were.

@@ -70,7 +70,8 @@ const std::optional<RoomShape>& RoomFinder::shapeOf(const FreeSpaceCluster& clus
     cached.cluster = cluster;
     cached.reach.setEmpty();
     for (const BorderCorner& corner : cluster.border) cached.reach.extend(corner.position_map.cast<double>());
-    const Eigen::Vector2d margin = Eigen::Vector2d::Constant(config_.furniture_depth_m + 0.2);
+    const Eigen::Vector2d margin =
+        Eigen::Vector2d::Constant(std::max(kLowFurniture_m, config_.furniture_depth_m) + 0.2);
     if (!cached.reach.isEmpty())
       cached.reach = Eigen::AlignedBox2d(cached.reach.min() - margin, cached.reach.max() + margin);
   }
@@ -80,6 +81,7 @@ const std::optional<RoomShape>& RoomFinder::shapeOf(const FreeSpaceCluster& clus
     if (!band.holds(wall) || !map_.isRecent(wall, config_.window_keyframes)) continue;
     if (!cached.reach.intersects(boxOf(wall))) continue;
     walls.push_back(wall);
+    walls.back().low = band.isLow(wall);
     changes.push_back(wall.changed);
   }
   if (known && changes == cached.walls) return cached.shape;

@@ -46,8 +46,10 @@ std::vector<bool> insideOf(const std::vector<LineCell>& cells, const CellIndex& 
         frame_m += (b - a).norm();
         continue;
       }
-      const double bare_m = (b - a).norm() - walledLength(lines[static_cast<size_t>(cell.lines[k])], a, b);
-      cut.addPair(i, other, boundary_cost_m * std::max(0.0, bare_m));
+      const WalledLength walled = walledLength(lines[static_cast<size_t>(cell.lines[k])], a, b);
+      // Rooms go on behind low things, as long as there is no better end.
+      const double low_m = walled.all_m - walled.high_m, bare_m = (b - a).norm() - walled.all_m;
+      cut.addPair(i, other, boundary_cost_m * std::max(0.0, bare_m + 2 * low_m));
     }
     cut.addNode(i, cell.area_m2 - cell.covered_m2 + boundary_cost_m * frame_m, cell.covered_m2);
   }
@@ -142,6 +144,16 @@ std::vector<OutlineCorner> cornersOf(const std::vector<Edge>& loop) {
   return corners;
 }
 
+double joinedLength(std::vector<std::pair<double, double>> pieces) {
+  std::sort(pieces.begin(), pieces.end());
+  double length = 0, reached = -std::numeric_limits<double>::infinity();
+  for (const auto& [begin, end] : pieces) {
+    length += std::max(0.0, end - std::max(begin, reached));
+    reached = std::max(reached, end);
+  }
+  return length;
+}
+
 Polygon2d polygonOf(const std::vector<OutlineCorner>& corners) {
   Polygon2d polygon;
   for (const OutlineCorner& corner : corners) polygon.push_back(corner.position_map);
@@ -150,22 +162,19 @@ Polygon2d polygonOf(const std::vector<OutlineCorner>& corners) {
 
 }  // namespace
 
-double walledLength(const OutlineLine& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+WalledLength walledLength(const OutlineLine& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d inward(a.y() - b.y(), b.x() - a.x());
-  if (line.normal.dot(inward) <= 0) return 0;
-  std::vector<std::pair<double, double>> pieces;
+  std::vector<std::pair<double, double>> high, all;
   for (const Wall& wall : line.walls) {
+    if (wall.normal.dot(inward) <= 0) continue;
     const double begin = std::max(wall.along.dot(a), wall.begin_m - kWallEnds_m);
     const double end = std::min(wall.along.dot(b), wall.end_m + kWallEnds_m);
-    if (begin < end) pieces.emplace_back(begin, end);
+    if (begin >= end) continue;
+    all.emplace_back(begin, end);
+    if (!wall.low) high.emplace_back(begin, end);
   }
-  std::sort(pieces.begin(), pieces.end());
-  double length = 0, reached = -std::numeric_limits<double>::infinity();
-  for (const auto& [begin, end] : pieces) {
-    length += std::max(0.0, end - std::max(begin, reached));
-    reached = std::max(reached, end);
-  }
-  return std::min(length, (b - a).norm());
+  const double length = (b - a).norm();
+  return {std::min(length, joinedLength(std::move(high))), std::min(length, joinedLength(std::move(all)))};
 }
 
 RoomOutline outlineOf(const ClusterBorder& border, const BorderEvidence& evidence, double boundary_cost_m) {

@@ -29,6 +29,7 @@ const Wall* wallAlong(const OutlineLine& line, const Eigen::Vector2d& a, const E
   const Wall* best = nullptr;
   double most = 0;
   for (const Wall& wall : line.walls) {
+    if (wall.along.dot(b - a) <= 0) continue;
     const double overlap =
         std::min(wall.along.dot(b), wall.end_m) - std::max(wall.along.dot(a), wall.begin_m);
     if (overlap <= most) continue;
@@ -45,7 +46,7 @@ std::vector<Side> sidesOf(const RoomOutline& outline, const std::vector<OutlineL
     Side side{corner.position_map, outline.corners[(i + 1) % outline.corners.size()].position_map};
     if (corner.line >= 0) {
       const OutlineLine& line = lines[static_cast<size_t>(corner.line)];
-      side.walled_m = walledLength(line, side.a, side.b);
+      side.walled_m = walledLength(line, side.a, side.b).all_m;
       if (side.walled_m > kMinEdgeShare * side.length()) side.wall = wallAlong(line, side.a, side.b);
     }
     sides.push_back(side);

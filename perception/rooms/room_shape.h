@@ -6,6 +6,7 @@
 #include "common/types/rooms.h"
 #include "perception/rooms/cluster_border.h"
 #include "perception/rooms/rooms_config.h"
+#include "perception/rooms/wall_candidates.h"
 #include "perception/rooms/wall_map.h"
 
 namespace sgraphs {

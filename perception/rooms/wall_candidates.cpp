@@ -6,17 +6,21 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kPiece_m = 0.4;          // borders are looked at in pieces of at most this
-constexpr double kBehind_m = 0.3;         // a border may lie so far behind a wall's face: door reveals, noise
-constexpr double kEnds_m = 0.15;          // walls end earlier in what was seen of them
-constexpr double kFacing = 0.3;           // least cosine between a wall's normal and the border's
-constexpr double kMinSupport_m = 0.3;     // of border in front of a wall
-constexpr double kSameLine_m = 0.1;       // walls that are one for an outline
+constexpr double kPiece_m = 0.4;       // borders are looked at in pieces of at most this
+constexpr double kBehind_m = 0.3;      // a border may lie so far behind a wall's face: door reveals, noise
+constexpr double kEnds_m = 0.15;       // walls end earlier in what was seen of them
+constexpr double kFacing = 0.3;        // least cosine between a wall's normal and the border's
+constexpr double kMinSupport_m = 0.3;  // of border in front of a wall
+constexpr double kSameLine_m = 0.1;    // walls that are one for an outline
+constexpr double kSameFace_m = 0.03;
 constexpr double kSameLine_cos = 0.9962;  // 5 degrees
 constexpr double kExplained_m = 0.25;     // border this near to an outline's line needs none of its own
 constexpr double kExplained_cos = 0.94;   // 20 degrees
 constexpr double kMinBare_m = 0.6;        // shorter stretches without a wall make no line: people, chairs
-constexpr size_t kMaxLines = 60;          // cells are named by one bit per line
+// Walls count if they fill a part of the height between knees and head.
+constexpr double kBottom_m = 0.2, kTop_m = 1.8, kMinInBand_m = 0.25;
+constexpr double kLow_m = 1.1;    // a LiDAR at hip height sees more of a wall
+constexpr size_t kMaxLines = 60;  // cells are named by one bit per line
 
 struct Piece {
   BorderEdge edge;
@@ -58,15 +62,17 @@ bool liesOn(const OutlineLine& line, const Eigen::Vector2d& a, const Eigen::Vect
   return std::abs(line.distance(a)) < gap_m && std::abs(line.distance(b)) < gap_m;
 }
 
-// Walls that face the same way on one line within the noise of a map join in it, the longest leads.
+// Walls on one line within the noise of a map join in it, the longest leads; those that face the other way
+// only if they cannot be the two faces of a wall.
 std::vector<OutlineLine> joinedLines(std::vector<Wall> walls) {
   std::stable_sort(walls.begin(), walls.end(),
                    [](const Wall& a, const Wall& b) { return a.length() > b.length(); });
   std::vector<OutlineLine> lines;
   for (const Wall& wall : walls) {
     const auto line = std::find_if(lines.begin(), lines.end(), [&wall](const OutlineLine& l) {
-      return l.normal.dot(wall.normal) > kSameLine_cos &&
-             liesOn(l, wall.pointAt(wall.begin_m), wall.pointAt(wall.end_m), kSameLine_m);
+      const double cos = l.normal.dot(wall.normal);
+      return std::abs(cos) > kSameLine_cos && liesOn(l, wall.pointAt(wall.begin_m), wall.pointAt(wall.end_m),
+                                                     cos > 0 ? kSameLine_m : kSameFace_m);
     });
     if (line != lines.end())
       line->walls.push_back(wall);
@@ -90,6 +96,14 @@ void addBareLines(std::vector<BorderEdge> bare, std::vector<OutlineLine>& lines)
 
 }  // namespace
 
+bool StoreyBand::holds(const Wall& wall) const {
+  return std::min(top_z_m, wall.top_z_m) - std::max(bottom_z_m, wall.bottom_z_m) >= kMinInBand_m;
+}
+
+StoreyBand bandAbove(double surface_z_m) {
+  return {surface_z_m + kBottom_m, surface_z_m + kTop_m, surface_z_m + kLow_m};
+}
+
 BorderEvidence evidenceOf(const ClusterBorder& border, const std::vector<Wall>& walls,
                           double furniture_depth_m) {
   std::vector<double> support(walls.size(), 0.0);
@@ -98,11 +112,14 @@ BorderEvidence evidenceOf(const ClusterBorder& border, const std::vector<Wall>& 
   for (const BorderEdge& edge : border.edges) {
     double unexplained_m = 0;
     for (const Piece& piece : piecesOf(edge)) {
+      const bool low = std::any_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+        return wall.low && standsBehind(wall, piece, kBehind_m);
+      });
+      const double depth_m = low ? std::max(kLowFurniture_m, furniture_depth_m) : furniture_depth_m;
       const Wall* deepest = nullptr;
       for (size_t i = 0; i < walls.size(); ++i) {
         const Wall& wall = walls[i];
-        if (!standsBehind(wall, piece, furniture_depth_m) || isPartitioned(piece.middle, wall, walls))
-          continue;
+        if (!standsBehind(wall, piece, depth_m) || isPartitioned(piece.middle, wall, walls)) continue;
         if (edge.kind == BorderKind::kObstacle)
           support[i] += std::abs(wall.along.dot(piece.edge.b - piece.edge.a));
         if (!deepest || wall.distance(piece.middle) > deepest->distance(piece.middle)) deepest = &wall;

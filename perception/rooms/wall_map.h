@@ -16,6 +16,7 @@ struct Wall {
   Eigen::Vector2d along = -Eigen::Vector2d::UnitY();  // unit
   double begin_m = 0, end_m = 0;                      // extent: along.p, begin <= end
   double bottom_z_m = 0, top_z_m = 0;
+  bool low = false;      // furniture, or a parapet, as its storey tells
   int64_t changed = 0;   // counts the changes of all planes: another value, another wall
   int64_t keyframe = 0;  // keyframes of the map when it last changed
 

@@ -112,6 +112,13 @@ class Builder {
     return {};
   }
 
+  bool isInRoom(const Eigen::Vector2d& p, double z) const {
+    return std::any_of(scene_.rooms.begin(), scene_.rooms.end(), [&](const simulate::Room& room) {
+      const double off = z - scene_.floors_z_m[static_cast<size_t>(room.floor)];
+      return off > -0.1 && off < 2.5 && contains(room.polygon, p);
+    });
+  }
+
   void addPassages() {
     for (const simulate::Doorway& door : scene_.doorways) {
       const Doorframe frame = doorframeOf(scene_, door);
@@ -174,6 +181,9 @@ class Builder {
         const Eigen::Vector2d a = box.center + turn * corners[i],
                               b = box.center + turn * corners[(i + 1) % 4];
         if ((b - a).norm() * (box.z_max_m - box.z_min_m) < 0.5) continue;
+        // Backs against a wall are not seen.
+        const Eigen::Vector2d out = Eigen::Vector2d(a.y() - b.y(), b.x() - a.x()).normalized();
+        if (!isInRoom(0.5 * (a + b) + 0.08 * out, box.z_min_m)) continue;
         const PlaneId id{static_cast<int64_t>(world_.update.planes.size())};
         world_.update.planes.push_back(wallPlane(id, toMap(a), toMap(b), box.z_min_m, box.z_max_m));
       }
