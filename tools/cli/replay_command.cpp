@@ -23,6 +23,7 @@ SystemConfig configOf(const Arguments& arguments) {
   if (!arguments.config_file.empty()) loadConfigFile(visitOf(config), arguments.config_file);
   for (const std::string& assignment : arguments.assignments) setConfigValue(visitOf(config), assignment);
   if (arguments.threads > 0) config.odometry.threads = arguments.threads;
+  if (arguments.layers == "rooms") config.backend.floors.factors = false;
   return config;
 }
 
