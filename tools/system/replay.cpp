@@ -8,25 +8,49 @@
 #include "tools/system/run_record.h"
 
 namespace sgraphs {
+namespace {
+
+// What the odometry says, and what of the source concerns other stages too. A stage that hears more gets a
+// row here.
+constexpr const char* kFromOdometry[] = {channels::kOdometry.name, channels::kKeyframe.name,
+                                         channels::kOdometryEnd.name};
+constexpr const char* kFromSource[] = {channels::kSession.name, channels::kRoundSchedule.name,
+                                       channels::kStreamEnd.name};
+
+}  // namespace
 
 Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
   if (!options_.odometry.empty()) parseOdometryMode(options_.odometry);
-  odometry_.emplace(bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
+  odometry_.emplace(odometry_bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
   planes_.emplace(bus_, makePlanesStep(options_.config));
   free_space_.emplace(bus_, makeFreeSpaceStep(options_.config));
   rooms_.emplace(bus_, makeRoomsStep(options_.config));
   backend_.emplace(bus_, makeBackendCore(options_.config));
   if (!options_.record.empty()) startRecording();
+  connect();
   inspect();
+}
+
+void Replay::connect() {
+  // A recording wants everything in one order.
+  others_.emplace(bus_, options_.config.odometry.threads > 1 && !recording_);
+  const auto forward = [this](const char* channel) {
+    odometry_bus_.subscribe(channel, [this, channel](Bus::Bytes bytes) { others_->deliver(channel, bytes); });
+  };
+  for (const char* channel : kFromSource) forward(channel);
+  for (const char* channel : kFromOdometry) forward(channel);
 }
 
 // What a recorder on the bus of the real processes would see.
 void Replay::startRecording() {
   recording_ = std::make_unique<LogWriter>(options_.record);
-  for (const channels::Row& row : channels::table())
-    bus_.subscribe(row.name, [this, channel = std::string(row.name)](Bus::Bytes bytes) {
-      recording_->write(now_us_, channel, bytes);
-    });
+  const auto listen = [this](MemoryBus& bus, const char* channel) {
+    bus.subscribe(channel, [this, channel](Bus::Bytes bytes) { recording_->write(now_us_, channel, bytes); });
+  };
+  for (const channels::Row& row : channels::table()) {
+    const bool at_source = row.raw || std::string(row.writer) == "sgraphs-odometry";
+    listen(at_source ? odometry_bus_ : bus_, row.name);
+  }
 }
 
 // One pass over the log before the run: it must be one of ours, and a recorded schedule must be known before
@@ -62,8 +86,8 @@ void Replay::inspect() {
 
 void Replay::feed(const LogEvent& event) {
   now_us_ = std::max(now_us_, event.timestamp_us);
-  bus_.publish(event.channel, event.bytes);
-  bus_.dispatch(0);
+  odometry_bus_.publish(event.channel, event.bytes);
+  odometry_bus_.dispatch(0);
 }
 
 // Every node sees the same SESSION, with the stages that this replay was asked for.
@@ -72,8 +96,8 @@ void Replay::feedSession(session_t session) {
     session.stages = options_.stages;
     session.num_stages = static_cast<int32_t>(session.stages.size());
   }
-  publish(bus_, channels::kSession, session);
-  bus_.dispatch(0);
+  publish(odometry_bus_, channels::kSession, session);
+  odometry_bus_.dispatch(0);
 }
 
 void Replay::run() {
@@ -102,6 +126,7 @@ void Replay::run() {
     warnings_.push_back(std::to_string(reader.skippedBytes()) + " bytes of log '" + options_.log +
                         "' belong to no event and were skipped");
   if (!odometry_->done()) endWithoutStreamEnd();
+  others_->finish();
   wall_s_ = watch.elapsedSeconds();
   if (recording_) recording_->close();
   requireScans();
@@ -114,7 +139,7 @@ void Replay::endWithoutStreamEnd() {
   warnings_.push_back("log '" + options_.log + "' has no STREAM_END: the last complete scan counts");
   // The same bytes give the same result: nothing here is a reason against it.
   odometry_->finish("");
-  bus_.dispatch(0);
+  odometry_bus_.dispatch(0);
 }
 
 void Replay::requireScans() const {

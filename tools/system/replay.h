@@ -9,6 +9,7 @@
 #include "backend/output/run_outputs.h"
 #include "common/bus/log_file.h"
 #include "common/bus/memory_bus.h"
+#include "tools/system/bus_worker.h"
 #include "tools/system/stages.h"
 #include "tools/system/system_config.h"
 
@@ -30,7 +31,8 @@ struct ReplayOptions {
 };
 
 // All stages in one process, fed from a log in file order through its raw channels alone. The nodes are those
-// of the processes, over encoded bytes, so that the result is theirs to the last bit.
+// of the processes, over encoded bytes, so that the result is theirs to the last bit. With more than one
+// thread the odometry, which needs nothing from the others, runs ahead of them.
 class Replay {
  public:
   // Throws Error if the log cannot be read or holds no SESSION of this version.
@@ -47,6 +49,7 @@ class Replay {
  private:
   void inspect();
   void startRecording();
+  void connect();
   void feed(const LogEvent& event);
   void feedSession(session_t session);
   void endWithoutStreamEnd();
@@ -54,12 +57,13 @@ class Replay {
 
   ReplayOptions options_;
   std::shared_ptr<Vlp16Counts> counts_ = std::make_shared<Vlp16Counts>();
-  MemoryBus bus_;
+  MemoryBus odometry_bus_, bus_;  // the odometry's, and that of all others
   std::optional<OdometryNode> odometry_;
   std::optional<PlanesNode> planes_;
   std::optional<FreeSpaceNode> free_space_;
   std::optional<RoomsNode> rooms_;
   std::optional<BackendNode> backend_;
+  std::optional<BusWorker> others_;
   std::unique_ptr<LogWriter> recording_;
   int64_t now_us_ = 0;  // receive time of the event that is being worked on
   std::vector<std::string> warnings_;
