@@ -194,6 +194,41 @@ TEST(RoomFinderTest, PassagesInsideOneRoomAreNoDoorways) {
   EXPECT_TRUE(settled(world).doorways.empty());
 }
 
+// Two arms of a corridor, 2 m wide, cut at x = 5.
+TEST(RoomFinderTest, OpenEndOfACorridorIsNoDoorwayAndADoorInItsEndWallIsOne) {
+  FreeSpace free_space;
+  const std::vector<BorderKind> kinds_a{BorderKind::kObstacle, BorderKind::kPassage, BorderKind::kObstacle,
+                                        BorderKind::kObstacle};
+  const std::vector<BorderKind> kinds_b{BorderKind::kObstacle, BorderKind::kObstacle, BorderKind::kObstacle,
+                                        BorderKind::kPassage};
+  setClusters(free_space,
+              {clusterOf(0, rectangle(0, 0, 5, 2), kinds_a), clusterOf(1, rectangle(5, 0, 12, 2), kinds_b)});
+  Passage passage{PassageId{0}, FloorId{0}, ClusterId{0}, ClusterId{1}};
+  passage.left_map = {5.4f, 0.1f};
+  passage.right_map = {5.4f, 1.9f};
+  free_space.passages[passage.id] = passage;
+  MapUpdate update;
+  update.keyframes = {keyframeAt(0, {1, 1}), keyframeAt(1, {8, 1})};
+  addWalls(update, rectangle(0, 0, 12, 2), 0);
+  RoomFinder finder(RoomsConfig{});
+  finder.step(free_space, update);
+  Rooms rooms = finder.step(free_space, idleRound(1));
+  ASSERT_EQ(rooms.rooms.size(), 2u);
+  EXPECT_TRUE(rooms.doorways.empty());
+  setClusters(free_space, {clusterOf(0, {{0, 0}, {5, 0}, {5, 0.5}, {5, 1.5}, {5, 2}, {0, 2}},
+                                     {BorderKind::kObstacle, BorderKind::kObstacle, BorderKind::kPassage,
+                                      BorderKind::kObstacle, BorderKind::kObstacle, BorderKind::kObstacle}),
+                           free_space.clusters.at(ClusterId{1})});
+  free_space.passages[passage.id].left_map.y() = 0.5f;
+  free_space.passages[passage.id].right_map.y() = 1.5f;
+  MapUpdate end_wall = idleRound(2);
+  end_wall.planes = {wallPlane(PlaneId{10}, {5, 0}, {5, 2})};
+  finder.step(free_space, end_wall);
+  rooms = finder.step(free_space, idleRound(3));
+  ASSERT_EQ(rooms.doorways.size(), 1u);
+  EXPECT_LT((rooms.doorways[0].position_map.head<2>() - Eigen::Vector2d(5, 1)).norm(), 1e-5) << "in the wall";
+}
+
 TEST(RoomFinderTest, RoomSeenThroughItsDoorOnlyIsNoneUntilItIsEntered) {
   simulate::Scene scene = sceneOf({rectangle(0, 0, 5, 4), rectangle(5.1, 0, 9, 4)});
   scene.doorways = {doorAt(5.05, 2, 1.0)};
