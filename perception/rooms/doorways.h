@@ -9,8 +9,10 @@
 
 namespace sgraphs {
 
-// The passages that lead from one room into another, or from a room into what is none yet, by id. A doorway
-// stands in the middle of its wall if both faces are known.
+// The passages through walls that lead from one room into another, or from a room into what is none yet, by
+// id. A doorway stands in the middle of its wall if both faces are known, else in the one that is. Where a
+// room is open over all its width and no wall is known on either side, a corridor was cut: that is no
+// doorway.
 std::vector<Doorway> doorwaysOf(const std::map<PassageId, Passage>& passages, const RoomTracker& rooms,
                                 const std::map<PlaneId, Wall>& walls);
 

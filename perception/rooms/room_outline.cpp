@@ -10,6 +10,8 @@ namespace sgraphs {
 namespace {
 
 constexpr double kWallEnds_m = 0.1;  // walls end earlier in what was seen of them
+// Of the cost of bare outline: enough that no door leaf stands out of a room as a fin.
+constexpr double kAlongWalls = 0.15;
 constexpr double kMinEdge_m = 1e-5;  // shorter edges come of rounding
 
 struct Edge {
@@ -49,7 +51,8 @@ std::vector<bool> insideOf(const std::vector<LineCell>& cells, const CellIndex& 
       const WalledLength walled = walledLength(lines[static_cast<size_t>(cell.lines[k])], a, b);
       // Rooms go on behind low things, as long as there is no better end.
       const double low_m = walled.all_m - walled.high_m, bare_m = (b - a).norm() - walled.all_m;
-      cut.addPair(i, other, boundary_cost_m * std::max(0.0, bare_m + 2 * low_m));
+      cut.addPair(i, other,
+                  boundary_cost_m * (std::max(0.0, bare_m + 2 * low_m) + kAlongWalls * walled.high_m));
     }
     cut.addNode(i, cell.area_m2 - cell.covered_m2 + boundary_cost_m * frame_m, cell.covered_m2);
   }

@@ -26,9 +26,9 @@ struct WalledLength {
 };
 WalledLength walledLength(const OutlineLine& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 
-// The union of cells that agrees best with the free space, where an outline along walls costs nothing and any
-// other boundary_cost_m per metre, along low furniture twice that; its largest connected part. Empty if there
-// is none.
+// The union of cells that agrees best with the free space, where an outline along walls costs next to nothing
+// and any other boundary_cost_m per metre, along low furniture twice that; its largest connected part. Empty
+// if there is none.
 RoomOutline outlineOf(const ClusterBorder& border, const BorderEvidence& evidence, double boundary_cost_m);
 
 }  // namespace sgraphs

@@ -46,10 +46,11 @@ class Builder {
   Eigen::Vector2d toMap(const Eigen::Vector2d& p) const { return rotation_ * p + options_.offset_m; }
 
   // A wall (or a mesh, of which all rooms' edges are taken for walls) whose face is at p.
-  bool isWalled(const Eigen::Vector2d& p, double z) const {
+  bool isWalled(const Eigen::Vector2d& p, const Eigen::Vector2d& along, double z) const {
     if (!scene_.meshes.empty()) return true;
     return std::any_of(scene_.walls.begin(), scene_.walls.end(), [&](const simulate::Wall& wall) {
-      return !wall.glass && wall.z_min_m < z + 1 && wall.z_max_m > z + 1 &&
+      return !wall.glass && std::abs(along.dot((wall.b - wall.a).normalized())) > 0.99 &&
+             wall.z_min_m < z + 1 && wall.z_max_m > z + 1 &&
              std::abs(distanceToSegment(p, wall.a, wall.b) - 0.5 * wall.thickness_m) < 0.06;
     });
   }
@@ -62,7 +63,7 @@ class Builder {
         const int n = std::max(2, static_cast<int>((b - a).norm() / 0.1));
         int first = -1, last = -1;
         for (int k = 0; k < n; ++k)
-          if (isWalled(a + (b - a) * (k + 0.5) / n, z)) {
+          if (isWalled(a + (b - a) * (k + 0.5) / n, (b - a).normalized(), z)) {
             if (first < 0) first = k;
             last = k;
           }
