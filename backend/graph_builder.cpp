@@ -120,6 +120,14 @@ void GraphBuilder::addSameHeight(PlaneId a, PlaneId b, double sigma_m) {
   graph_.same_heights.push_back({id, a, b, sigma_m});
 }
 
+void GraphBuilder::trust(PlaneId plane) {
+  for (const ObservationFactor& f : graph_.observations) {
+    if (f.plane != plane) continue;
+    solver_.setCauchyScale(factors_.at(f.id).factor, std::nullopt);
+    trusted_.push_back(f.id);
+  }
+}
+
 // Observations move over. Factors between planes and with `up` go where `into` has the same already; a factor
 // of the two with each other is void.
 void GraphBuilder::mergePlanes(PlaneId from, PlaneId into) {
@@ -199,6 +207,11 @@ void GraphBuilder::relevel() {
 
 IncrementalSolver::Report GraphBuilder::solve(bool whole) {
   IncrementalSolver::Report report = solver_.solve(whole);
+  if (!trusted_.empty() && report.whole && report.converged) {
+    for (const int64_t id : std::exchange(trusted_, {}))
+      solver_.setCauchyScale(factors_.at(id).factor, kCauchy3);
+    report = solver_.solve(true);
+  }
   takeOver(report.free);
   return report;
 }

@@ -62,6 +62,9 @@ class GraphBuilder {
 
   // All that is known of `from` becomes knowledge of `into`, which lives on; `from` is no node any more.
   void mergePlanes(PlaneId from, PlaneId into);
+  // Before the two are merged though they are apart, on the word of others (a room): until the next solve of
+  // the whole graph has brought them together, what was seen of them is not taken for outliers.
+  void trust(PlaneId plane);
 
   // Turns the map about the first keyframe so that `up` is z again and the first keyframe keeps its heading.
   // Residuals do not change: the whole map turns. Nothing without an up factor.
@@ -111,6 +114,7 @@ class GraphBuilder {
   std::map<StateId, FloorId> height_of_state_;
   StateId up_state_ = -1;
   std::map<int64_t, Registered> factors_;  // by id of the graph's factors
+  std::vector<int64_t> trusted_;           // observations that are not robust for now
   int64_t next_factor_ = 0;
   int64_t next_plane_ = 0;
 };

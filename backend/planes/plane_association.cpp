@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "backend/planes/plane_extent.h"
@@ -13,6 +14,9 @@ namespace {
 
 // Two observations of one keyframe are pieces of one face if less than this part of the smaller overlaps.
 constexpr double kPieceOverlap = 0.1;
+// Doors make gaps in a wall sideways; one as high as a slab parts the walls of two storeys.
+constexpr double kMaxGapUp_m = 0.25;
+constexpr double kPlumb = 0.1;  // |n.z| of a wall
 
 struct Match {
   double distance2;
@@ -22,6 +26,20 @@ struct Match {
 
 bool overlapMuch(const Polygon2d& a, const Polygon2d& b) {
   return overlapArea(a, b) > kPieceOverlap * std::min(polygonArea(a), polygonArea(b));
+}
+
+double gapUp(const PlaneObservation& z, const SE3& T_map_body, const PlaneNode& plane) {
+  const auto [low, high] = std::minmax_element(plane.polygon_map.begin(), plane.polygon_map.end(),
+                                               [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  if (low == plane.polygon_map.end() || z.boundary.empty()) return 0.0;
+  const TangentBasis axes = tangentBasis(z.normal_body);
+  double below = -std::numeric_limits<double>::infinity(), above = below;
+  for (const Eigen::Vector2f& corner : z.boundary) {
+    const double height = (T_map_body * (z.centroid_body + axes * corner.cast<double>())).z();
+    below = std::max(below, height);   // the highest, should it be below
+    above = std::max(above, -height);  // the lowest, should it be above
+  }
+  return std::max({0.0, low->z() - below, -above - high->z()});
 }
 
 // Two candidates are rivals if they could not be one surface: pieces of one wall are no ambiguity.
@@ -57,6 +75,8 @@ std::optional<double> planeDistance(const PlaneObservation& z, const SE3& T_map_
   // Along the plane the map may be off by the pose's own uncertainty.
   const double slack = 2 * std::sqrt(candidate.pose_covariance.topLeftCorner<3, 3>().trace());
   if (gapBetween(extentOn(plane, z, T_map_body), extentOf(plane)) > gate.max_gap_m + slack)
+    return std::nullopt;
+  if (std::abs(plane.normal_map.z()) < kPlumb && gapUp(z, T_map_body, plane) > kMaxGapUp_m + slack)
     return std::nullopt;
   return distance2;
 }

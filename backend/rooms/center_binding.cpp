@@ -1,6 +1,6 @@
 #include "backend/rooms/center_binding.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -103,12 +103,33 @@ void bindAnchors(const CenterEvidence& evidence, const std::vector<Eigen::Vector
          .sigma_m = evidence.along_sigma_m});
 }
 
+// Where the factors will have it: equally far from the walls of each pair, and as seen in open directions.
+Eigen::Vector2d boundCenter(const CenterEvidence& evidence, const Pairs& pairs,
+                            const std::vector<Eigen::Vector2d>& open, const SituationalGraph& graph) {
+  Eigen::Matrix2d A;
+  Eigen::Vector2d b;
+  Eigen::Index row = 0;
+  for (const auto& pair : pairs) {
+    const PlaneNode &p = graph.planes.at(pair.first), &q = graph.planes.at(pair.second);
+    const Eigen::Vector3d across = p.normal_map - q.normal_map;
+    A.row(row) = across.head<2>().transpose();
+    b(row++) = -(across.z() * evidence.height_m + p.d() - q.d());
+  }
+  for (const Eigen::Vector2d& u : open) {
+    A.row(row) = u.transpose();
+    b(row++) = u.dot(evidence.center_map);
+  }
+  return A.colPivHouseholderQr().solve(b);
+}
+
 }  // namespace
 
 void bindCenter(const CenterEvidence& evidence, GraphBuilder& builder) {
   const Pairs pairs = independent(builder.graph(), evidence.pairs);
+  const std::vector<Eigen::Vector2d> open = openDirections(builder.graph(), pairs);
+  builder.setCenter(evidence.of, boundCenter(evidence, pairs, open, builder.graph()));
   bindWalls(evidence, pairs, builder);
-  bindAnchors(evidence, openDirections(builder.graph(), pairs), builder);
+  bindAnchors(evidence, open, builder);
 }
 
 }  // namespace sgraphs

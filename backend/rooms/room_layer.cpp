@@ -110,7 +110,10 @@ bool RoomLayer::mergeDuplicates(std::vector<RoomObservation>& seen) {
 void RoomLayer::mergeWalls(const std::vector<std::pair<PlaneId, PlaneId>>& matches) {
   for (const auto& [a, b] : matches) {
     const auto& planes = builder_.graph().planes;
-    if (a != b && planes.contains(a) && planes.contains(b)) planes_.merge(std::max(a, b), std::min(a, b));
+    if (a == b || !planes.contains(a) || !planes.contains(b)) continue;
+    builder_.trust(a);
+    builder_.trust(b);
+    planes_.merge(std::max(a, b), std::min(a, b));
   }
 }
 

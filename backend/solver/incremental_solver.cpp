@@ -88,6 +88,12 @@ void IncrementalSolver::setEnabled(FactorId factor, bool enabled) {
   impl_->markFactor(impl_->graph.factors[static_cast<size_t>(factor)].states);
 }
 
+void IncrementalSolver::setCauchyScale(FactorId factor, std::optional<double> cauchy_scale) {
+  Factor& f = impl_->graph.factors.at(static_cast<size_t>(factor));
+  f.loss = cauchy_scale ? std::make_unique<ceres::CauchyLoss>(*cauchy_scale) : nullptr;
+  if (f.enabled) impl_->markFactor(f.states);
+}
+
 bool IncrementalSolver::enabled(FactorId factor) const {
   return impl_->graph.factors.at(static_cast<size_t>(factor)).enabled;
 }

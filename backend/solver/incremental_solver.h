@@ -85,6 +85,8 @@ class IncrementalSolver {
   // still tells what its residual would be.
   void setEnabled(FactorId factor, bool enabled);
   bool enabled(FactorId factor) const;
+  // Robust from now on, or quadratic.
+  void setCauchyScale(FactorId factor, std::optional<double> cauchy_scale);
   // Binds the factor to another state of the same kind. Throws std::logic_error if it has that one already.
   void rebind(FactorId factor, StateId from, StateId to);
 

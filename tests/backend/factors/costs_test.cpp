@@ -6,12 +6,17 @@
 #include <functional>
 #include <random>
 
+#include "backend/factors/center_anchor_cost.h"
+#include "backend/factors/center_walls_cost.h"
 #include "backend/factors/faces_cost.h"
+#include "backend/factors/floor_height_cost.h"
+#include "backend/factors/floor_room_cost.h"
 #include "backend/factors/plane_manifold.h"
 #include "backend/factors/plane_up_cost.h"
 #include "backend/factors/pose_manifold.h"
 #include "backend/factors/pose_plane_cost.h"
 #include "backend/factors/relative_pose_cost.h"
+#include "backend/factors/room_shape_cost.h"
 #include "backend/factors/same_height_cost.h"
 #include "backend/factors/unit_vector_manifold.h"
 #include "backend/factors/up_cost.h"
@@ -19,7 +24,10 @@
 namespace sgraphs {
 namespace {
 
-enum class Block { kPose, kPlane, kUnitVector };
+enum class Block { kPose, kPlane, kUnitVector, kCenter, kHeight };
+
+// Maps that a residual does not tell apart: all, those whose z axis is up, or those with the same axes.
+enum class Maps { kAny, kLevel, kShifted };
 
 using States = std::vector<Eigen::VectorXd>;
 
@@ -66,6 +74,7 @@ struct Residual {
   double perturbation;
   // Its coordinates turn with the map's axes: only its length has a meaning.
   bool length_only = false;
+  Maps maps = Maps::kAny;
 };
 
 // The plane of x[1] as the pose of x[0] sees it, at the point of it below the body's origin and aside.
@@ -79,6 +88,81 @@ PlaneObservation observe(const States& x, const Eigen::Matrix3d& covariance) {
   z.centroid_body = T_map_body.inverse() * (aside - plane.distance(aside) * plane.normal);
   z.covariance = covariance;
   return z;
+}
+
+// A wall, plumb, facing this way.
+Eigen::VectorXd randomWall(double heading_rad, std::mt19937& random) {
+  return randomPlane({std::cos(heading_rad), std::sin(heading_rad), 0}, random);
+}
+
+// Halfway between two walls that are 20 degrees from parallel.
+States centerBetweenWalls(std::mt19937& random) {
+  const double heading = gaussian(1, 2.0, random)(0);
+  const Eigen::Vector2d center = gaussian(2, 3.0, random);
+  States x{center, randomWall(heading, random), randomWall(heading + M_PI + 0.35, random)};
+  for (size_t i : {1, 2}) {
+    const PlaneState plane = PlaneManifold::load(x[i].data());
+    x[i](3) += 1.7 - plane.distance({center.x(), center.y(), 0.4});
+  }
+  return x;
+}
+
+void addRoomResiduals(std::vector<Residual>& all) {
+  all.push_back({"CenterWalls",
+                 {Block::kCenter, Block::kPlane, Block::kPlane},
+                 centerBetweenWalls,
+                 [](const States&, double scale) { return CenterWallsCost::Create(0.4, 0.02 * scale); },
+                 0.3,
+                 false,
+                 Maps::kLevel});
+  all.push_back({"CenterAnchor",
+                 {Block::kCenter, Block::kPose},
+                 [](std::mt19937& random) {
+                   return States{gaussian(2, 3.0, random), randomPose(random)};
+                 },
+                 [](const States& x, double scale) {
+                   const SE3 T_body_map = PoseManifold::load(x[1].data()).inverse();
+                   return CenterAnchorCost::Create(T_body_map * Eigen::Vector3d(x[0](0), x[0](1), 0.7),
+                                                   T_body_map.rotation * Eigen::Vector3d(-0.8, 0.6, 0),
+                                                   0.05 * scale);
+                 },
+                 0.4,
+                 false,
+                 Maps::kLevel});
+  for (const bool square : {false, true})
+    all.push_back({square ? "Square" : "Parallel",
+                   {Block::kPlane, Block::kPlane},
+                   [square](std::mt19937& random) {
+                     const double heading = gaussian(1, 2.0, random)(0);
+                     const double other = heading + (square ? M_PI / 2 : M_PI);
+                     return States{randomWall(heading, random), randomWall(other, random)};
+                   },
+                   [square](const States&, double scale) {
+                     const auto kind = square ? RoomShapeCost::Kind::kSquare : RoomShapeCost::Kind::kParallel;
+                     return RoomShapeCost::Create(kind, 0.005 * scale);
+                   },
+                   0.3,
+                   false,
+                   Maps::kLevel});
+  all.push_back({"FloorHeight",
+                 {Block::kHeight, Block::kPlane},
+                 [](std::mt19937& random) {
+                   const Eigen::VectorXd plane = randomPlane(Eigen::Vector3d::UnitZ(), random);
+                   return States{Eigen::VectorXd::Constant(1, plane(6) - plane(3)), plane};
+                 },
+                 [](const States&, double scale) { return FloorHeightCost::Create(0.01 * scale); },
+                 0.35,
+                 false,
+                 Maps::kLevel});
+  all.push_back({"FloorRoom",
+                 {Block::kCenter, Block::kCenter},
+                 [](std::mt19937& random) {
+                   return States{gaussian(2, 5.0, random), gaussian(2, 5.0, random)};
+                 },
+                 [](const States& x, double scale) { return FloorRoomCost::Create(x[1] - x[0], 8 * scale); },
+                 20,
+                 false,
+                 Maps::kShifted});
 }
 
 std::vector<Residual> residuals() {
@@ -157,6 +241,7 @@ std::vector<Residual> residuals() {
                  },
                  [](const States&, double scale) { return SameHeightCost::Create(0.02 * scale); },
                  0.4});
+  addRoomResiduals(all);
   return all;
 }
 
@@ -165,6 +250,8 @@ class CostTest : public testing::TestWithParam<Residual> {
   const ceres::Manifold& manifold(size_t block) const {
     if (GetParam().blocks[block] == Block::kPose) return pose_;
     if (GetParam().blocks[block] == Block::kPlane) return plane_;
+    if (GetParam().blocks[block] == Block::kCenter) return center_;
+    if (GetParam().blocks[block] == Block::kHeight) return height_;
     return unit_vector_;
   }
 
@@ -193,7 +280,9 @@ class CostTest : public testing::TestWithParam<Residual> {
         PoseManifold::store(T_other_map * PoseManifold::load(x[i].data()), y[i].data());
       else if (GetParam().blocks[i] == Block::kPlane)
         y[i] = inOtherMap(PlaneManifold::load(x[i].data()), T_other_map);
-      else
+      else if (GetParam().blocks[i] == Block::kCenter)
+        y[i] = (T_other_map * Eigen::Vector3d(x[i](0), x[i](1), 0)).head<2>();
+      else if (GetParam().blocks[i] == Block::kUnitVector)
         y[i] = T_other_map.rotation * Eigen::Vector3d(x[i]);
     }
     return y;
@@ -207,6 +296,8 @@ class CostTest : public testing::TestWithParam<Residual> {
   PoseManifold pose_;
   PlaneManifold plane_;
   UnitVectorManifold unit_vector_;
+  ceres::EuclideanManifold<2> center_;
+  ceres::EuclideanManifold<1> height_;
 };
 
 TEST_P(CostTest, ZeroAtTruth) {
@@ -244,7 +335,11 @@ TEST_P(CostTest, DoesNotChangeWithTheMapFrame) {
     const std::unique_ptr<ceres::CostFunction> cost = GetParam().create(truth, 1.0);
     const States x = perturbed(truth, random);
     const Eigen::VectorXd other = randomPose(random);
-    const SE3 T_other_map = PoseManifold::load(other.data());
+    SE3 T_other_map = PoseManifold::load(other.data());
+    if (GetParam().maps != Maps::kAny) {
+      const double turn = GetParam().maps == Maps::kLevel ? 1.0 + trial : 0.0;
+      T_other_map = SE3(so3Exp({0, 0, turn}), {other(0), other(1), 0});
+    }
     const Eigen::VectorXd r = evaluate(*cost, x);
     const Eigen::VectorXd r_other = evaluate(*cost, inOtherMap(x, T_other_map));
     const double difference = GetParam().length_only ? r_other.norm() - r.norm() : (r_other - r).norm();
