@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/geometry/convex_polygon.h"
 
@@ -168,6 +169,31 @@ std::vector<size_t> simplifiedLoop(const CellLoop& loop, const std::vector<size_
     simplify(loop.corners, anchors[k], next, tolerance_m, stays);
   }
   return listed();
+}
+
+BorderLine lineOf(const CellLoop& loop, size_t begin, size_t end) {
+  const size_t n = loop.corners.size();
+  const size_t trim = (end - begin) / 6;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  const double count = static_cast<double>(end - begin - 2 * trim + 1);
+  for (size_t i = begin + trim; i <= end - trim; ++i) mean += loop.corners[i % n] / count;
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (size_t i = begin + trim; i <= end - trim; ++i) {
+    const Eigen::Vector2d d = loop.corners[i % n] - mean;
+    spread += d * d.transpose();
+  }
+  const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+  const Eigen::Vector2d axis(std::cos(angle), std::sin(angle));
+  const bool backward = axis.dot(loop.corners[end % n] - loop.corners[begin % n]) < 0;
+  return {mean, backward ? Eigen::Vector2d(-axis) : axis};
+}
+
+bool isWall(const CellLoop& loop, size_t begin, size_t end, double min_length_m) {
+  const size_t n = loop.corners.size();
+  size_t obstacles = 0;
+  for (size_t i = begin; i < end; ++i) obstacles += loop.kinds[i % n] == BorderKind::kObstacle ? 1 : 0;
+  return 2 * obstacles > end - begin &&
+         (loop.corners[end % n] - loop.corners[begin % n]).norm() >= min_length_m;
 }
 
 std::vector<BorderCorner> borderOf(const CellLoop& loop, double cell_m, size_t max_corners) {
