@@ -88,12 +88,11 @@ class Flood {
     return true;
   }
 
-  // Looser than what is kept in the end (joinWhereWide). Less than a cell's difference is what the grid
-  // makes.
+  // Looser than what is kept in the end (joinWhereWide): a door into a corridor that it meets askew is hardly
+  // narrower than the corridor's circles. Half a cell is what the grid itself makes.
   bool isNarrow(double passage_clearance_m, double side_clearance_m) const {
     return passage_clearance_m <= 0.5 * config_.max_passage_m &&
-           passage_clearance_m <
-               std::min(config_.kept_ratio * side_clearance_m, side_clearance_m - 1.1 * grid_.cell_m);
+           passage_clearance_m < std::min(0.95 * side_clearance_m, side_clearance_m - 0.6 * grid_.cell_m);
   }
 
   const StoreyGrid& grid_;

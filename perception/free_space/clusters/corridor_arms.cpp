@@ -13,8 +13,8 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kMinWall_m = 0.6;    // a shorter piece of wall has no direction on the grid
-constexpr double kMaxCorner_m = 0.8;  // how far corners are rounded, by pieces too short for a direction
+constexpr double kMinWall_m = 1.0;    // a shorter piece of wall has no direction on the grid
+constexpr double kMaxCorner_m = 1.0;  // how far corners are rounded, by pieces too short for a direction
 constexpr double kMinArm_m = 2.5;     // shorter ones are niches, whatever their width
 constexpr double kMaxArmWidth_m = 4;  // wider ones are halls
 constexpr double kMinTurn = 0.6;      // sine of the angle between the walls that meet, at least
@@ -45,7 +45,8 @@ std::vector<Wall> wallsOf(const CellLoop& loop, double cell_m) {
   std::vector<Wall> walls;
   for (size_t k = 0; k < stay.size(); ++k) {
     const size_t end = k + 1 < stay.size() ? stay[k + 1] : stay[0] + loop.corners.size();
-    if (isWall(loop, stay[k], end, kMinWall_m)) walls.push_back({stay[k], end, lineOf(loop, stay[k], end)});
+    if (isWall(loop, stay[k], end, kMinWall_m))
+      walls.push_back({stay[k], end, lineOf(loop, stay[k], end, cell_m)});
   }
   return walls;
 }
@@ -131,12 +132,19 @@ class ArmFinder {
   // Length, in the direction of the cut, of what lies beyond the cut.
   double besideLength(const Eigen::Vector2d& middle, double width_m, const Candidate& at,
                       int32_t label) const {
+    // Along a corridor of 50 m a ray must not end at a wall that the grid bends by a degree, or at one cell.
+    constexpr double kAngles_rad[] = {-0.02, -0.01, 0, 0.01, 0.02};
     double longest_m = 0;
-    for (const double depth : {0.25, 0.5, 0.75}) {
+    for (const double depth : {0.25, 0.4, 0.5, 0.6, 0.75}) {
       const Eigen::Vector2d p = middle - depth * width_m * at.arm;
       if (labelAt(grid_, labels_, p) != label) break;
-      longest_m = std::max(longest_m, reachWithin(grid_, labels_, p, at.along, label, kMaxRay_m) +
-                                          reachWithin(grid_, labels_, p, -at.along, label, kMaxRay_m));
+      double forward_m = 0, back_m = 0;
+      for (const double angle_rad : kAngles_rad) {
+        const Eigen::Vector2d along = at.along + angle_rad * at.arm;
+        forward_m = std::max(forward_m, reachWithin(grid_, labels_, p, along, label, kMaxRay_m));
+        back_m = std::max(back_m, reachWithin(grid_, labels_, p, -along, label, kMaxRay_m));
+      }
+      longest_m = std::max(longest_m, forward_m + back_m);
     }
     return longest_m;
   }

@@ -7,14 +7,9 @@
 
 namespace sgraphs {
 
-// Width of a cut between two regions as a share of the narrower side's width: the median of the widths at
-// some depths behind it, parallel to it. A median, so that a niche or a door opposite is no width.
-double relativeWidth(const StoreyGrid& grid, const CellLabels& labels, const Cut& cut, int32_t a, int32_t b);
-
-// The same for a cut through one region.
-inline double relativeWidth(const StoreyGrid& grid, const CellLabels& labels, const Cut& cut, int32_t label) {
-  return relativeWidth(grid, labels, cut, label, label);
-}
+// Width of a cut through a region as a share of the narrower side's width: the median of the widths at some
+// depths behind it, parallel to it. A median, so that a niche or a door opposite is no width.
+double relativeWidth(const StoreyGrid& grid, const CellLabels& labels, const Cut& cut, int32_t label);
 
 // What a cut's relative width must stay below; more where a cut was in the round before, so that cuts do not
 // come and go.

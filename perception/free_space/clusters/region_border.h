@@ -29,9 +29,9 @@ struct BorderLine {
   Eigen::Vector2d direction = Eigen::Vector2d::Zero();
 };
 
-// The straight line that the sides from one corner to another (end > begin; modulo the size) lie on, without
-// their ends, where rounded corners and niches are.
-BorderLine lineOf(const CellLoop& loop, size_t begin, size_t end);
+// The straight line that most of the sides from one corner to another (end > begin; modulo the size), and of
+// some beside them if those are few, lie on: noise, niches and rounded ends do not turn it.
+BorderLine lineOf(const CellLoop& loop, size_t begin, size_t end, double cell_m);
 
 // Mostly obstacles, and this long.
 bool isWall(const CellLoop& loop, size_t begin, size_t end, double min_length_m);

@@ -37,9 +37,9 @@ void addEnds(const CellLoop& loop, double cell_m, std::vector<WallEnd>& ends) {
     if (turn_rad > -kMinTurn_rad && turn_rad < M_PI - 0.4) continue;
     const size_t here_on = here > before ? here : here + size, to = after > here ? after : after + size;
     if (isWall(loop, before, here_on, kMinWall_m))
-      ends.push_back({loop.label, loop.corners[here], lineOf(loop, before, here_on).direction});
+      ends.push_back({loop.label, loop.corners[here], lineOf(loop, before, here_on, cell_m).direction});
     if (isWall(loop, here, to, kMinWall_m))
-      ends.push_back({loop.label, loop.corners[here], -lineOf(loop, here, to).direction});
+      ends.push_back({loop.label, loop.corners[here], -lineOf(loop, here, to, cell_m).direction});
   }
 }
 
