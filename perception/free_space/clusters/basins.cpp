@@ -32,10 +32,10 @@ std::vector<uint32_t> widestFirst(const StoreyGrid& grid) {
 
 class Flood {
  public:
-  Flood(const StoreyGrid& grid, const FreeSpaceGraphConfig& config, const std::vector<Cut>& former)
-      : grid_(grid), config_(config), former_(former), labels_(grid.state.size(), kNoLabel) {}
+  Flood(const StoreyGrid& grid, const FreeSpaceGraphConfig& config)
+      : grid_(grid), config_(config), labels_(grid.state.size(), kNoLabel) {}
 
-  CellLabels run(int* count) {
+  CellLabels run(int32_t* count) {
     for (const uint32_t cell : widestFirst(grid_)) take(cell);
     std::vector<int32_t> name(static_cast<size_t>(basins_.size()), kNoLabel);
     *count = 0;
@@ -82,24 +82,21 @@ class Flood {
     const auto peak = [this](int32_t i) { return peak_m_[static_cast<size_t>(i)]; };
     const double smaller_m = std::min(peak(a), peak(b));
     const double clearance_m = grid_.clearance_m[cell];
-    if (isNarrow(config_, grid_.cell_m, clearance_m, smaller_m, true) &&
-        isNarrow(config_, grid_.cell_m, clearance_m, smaller_m, wasCut(cell)))
-      return false;
+    if (isNarrow(clearance_m, smaller_m)) return false;
     if (peak(b) > peak(a) || (peak(b) == peak(a) && b < a)) std::swap(a, b);
     basins_.join(a, b);
     return true;
   }
 
-  bool wasCut(size_t cell) const {
-    const Eigen::Vector2d p = centerOf(grid_, cell);
-    return std::any_of(former_.begin(), former_.end(), [&](const Cut& cut) {
-      return cut.narrows && (p - cut.middle()).norm() < 0.5 * cut.width() + 0.1;
-    });
+  // Looser than what is kept in the end (joinWhereWide): a door into a corridor that it meets askew is hardly
+  // narrower than the corridor's circles. Half a cell is what the grid itself makes.
+  bool isNarrow(double passage_clearance_m, double side_clearance_m) const {
+    return passage_clearance_m <= 0.5 * config_.max_passage_m &&
+           passage_clearance_m < std::min(0.95 * side_clearance_m, side_clearance_m - 0.6 * grid_.cell_m);
   }
 
   const StoreyGrid& grid_;
   const FreeSpaceGraphConfig& config_;
-  const std::vector<Cut>& former_;
   CellLabels labels_;
   DisjointSets basins_;
   std::vector<float> peak_m_;
@@ -107,18 +104,8 @@ class Flood {
 
 }  // namespace
 
-bool isNarrow(const FreeSpaceGraphConfig& config, double cell_m, double passage_clearance_m,
-              double side_clearance_m, bool was_cut) {
-  // Less than a cell's difference is what the grid itself may make.
-  const double ratio = was_cut ? config.kept_ratio : config.narrow_ratio;
-  return passage_clearance_m <= 0.5 * config.max_passage_m &&
-         passage_clearance_m < ratio * side_clearance_m &&
-         passage_clearance_m < side_clearance_m - 1.1 * cell_m;
-}
-
-CellLabels floodBasins(const StoreyGrid& grid, const FreeSpaceGraphConfig& config,
-                       const std::vector<Cut>& former, int* count) {
-  return Flood(grid, config, former).run(count);
+CellLabels floodBasins(const StoreyGrid& grid, const FreeSpaceGraphConfig& config, int32_t* count) {
+  return Flood(grid, config).run(count);
 }
 
 }  // namespace sgraphs

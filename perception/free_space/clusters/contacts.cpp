@@ -98,16 +98,6 @@ Eigen::Vector2d faceOf(const std::vector<Eigen::Vector2d>& cells, const Eigen::V
   return n > 0 ? Eigen::Vector2d(jamb + sum_m / n * outward) : jamb;
 }
 
-// The side that the second region is on: +1 where it is to the left of the line from left to right.
-double sideOfB(const StoreyGrid& grid, const CellLabels& labels, const Contact& contact, const Cut& cut) {
-  double balance = 0;
-  for (const uint32_t cell : contact.cells) {
-    const double s = cross(cut.right - cut.left, centerOf(grid, cell) - cut.middle());
-    balance += labels[cell] == contact.b ? s : -s;
-  }
-  return balance;
-}
-
 }  // namespace
 
 std::vector<Contact> contactsOf(const StoreyGrid& grid, const CellLabels& labels) {
@@ -122,6 +112,18 @@ std::vector<Contact> contactsOf(const StoreyGrid& grid, const CellLabels& labels
     begin = end;
   }
   return contacts;
+}
+
+Cut turned(const StoreyGrid& grid, const CellLabels& labels, const Contact& contact, Cut cut) {
+  double side_a = 0, side_b = 0;
+  int num_a = 0, num_b = 0;
+  for (const uint32_t cell : contact.cells) {
+    const double side = cross(cut.right - cut.left, centerOf(grid, cell) - cut.middle());
+    (labels[cell] == contact.b ? side_b : side_a) += side;
+    ++(labels[cell] == contact.b ? num_b : num_a);
+  }
+  if (side_b * num_a < side_a * num_b) std::swap(cut.left, cut.right);
+  return cut;
 }
 
 std::optional<Cut> narrowestAt(const StoreyGrid& grid, const CellLabels& labels, const Contact& contact) {
@@ -158,8 +160,7 @@ std::optional<Cut> narrowestAt(const StoreyGrid& grid, const CellLabels& labels,
   const Eigen::Vector2d left = faceOf(cells, cut.left, -axis, grid.cell_m);
   cut.right = faceOf(cells, cut.right, axis, grid.cell_m);
   cut.left = left;
-  if (sideOfB(grid, labels, contact, cut) < 0) std::swap(cut.left, cut.right);
-  return cut;
+  return turned(grid, labels, contact, cut);
 }
 
 }  // namespace sgraphs

@@ -17,6 +17,9 @@ struct Contact {
 // All contacts by (a, b, first cell).
 std::vector<Contact> contactsOf(const StoreyGrid& grid, const CellLabels& labels);
 
+// The cut with left and right as seen when walking from a to b.
+Cut turned(const StoreyGrid& grid, const CellLabels& labels, const Contact& contact, Cut cut);
+
 // The narrowest line from obstacle to obstacle (or to what nobody has seen) across a saddle; left and right
 // as seen when walking from a to b.
 std::optional<Cut> narrowestAt(const StoreyGrid& grid, const CellLabels& labels, const Contact& contact);

@@ -6,12 +6,15 @@
 #include <optional>
 
 #include "common/geometry/convex_polygon.h"
+#include "perception/free_space/clusters/cell_rays.h"
 #include "perception/free_space/clusters/region_border.h"
+#include "perception/free_space/clusters/region_cuts.h"
 
 namespace sgraphs {
 namespace {
 
-constexpr double kMinWall_m = 0.6;    // a shorter piece of wall has no direction on the grid
+constexpr double kMinWall_m = 1.0;    // a shorter piece of wall has no direction on the grid
+constexpr double kMaxCorner_m = 1.0;  // how far corners are rounded, by pieces too short for a direction
 constexpr double kMinArm_m = 2.5;     // shorter ones are niches, whatever their width
 constexpr double kMaxArmWidth_m = 4;  // wider ones are halls
 constexpr double kMinTurn = 0.6;      // sine of the angle between the walls that meet, at least
@@ -31,49 +34,37 @@ struct Arm {
   bool goes_on = false;  // straight on beyond the cut
 };
 
-// Sides of a loop from one corner that stayed to the next, as a straight line.
-Eigen::Vector2d directionOf(const CellLoop& loop, size_t begin, size_t end) {
-  const size_t n = loop.corners.size();
-  // Without the ends, where rounded corners and niches are.
-  const size_t trim = (end - begin) / 6;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  const double count = static_cast<double>(end - begin - 2 * trim + 1);
-  for (size_t i = begin + trim; i <= end - trim; ++i) mean += loop.corners[i % n] / count;
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (size_t i = begin + trim; i <= end - trim; ++i) {
-    const Eigen::Vector2d d = loop.corners[i % n] - mean;
-    spread += d * d.transpose();
-  }
-  const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
-  const Eigen::Vector2d axis(std::cos(angle), std::sin(angle));
-  return axis.dot(loop.corners[end % n] - loop.corners[begin % n]) < 0 ? Eigen::Vector2d(-axis) : axis;
-}
+struct Wall {
+  size_t begin, end;  // sides of the loop, modulo its size
+  BorderLine line;
+};
 
-bool isWall(const CellLoop& loop, size_t begin, size_t end) {
-  const size_t n = loop.corners.size();
-  size_t obstacles = 0;
-  for (size_t i = begin; i < end; ++i) obstacles += loop.kinds[i % n] == BorderKind::kObstacle ? 1 : 0;
-  return 2 * obstacles > end - begin &&
-         (loop.corners[end % n] - loop.corners[begin % n]).norm() >= kMinWall_m;
+// The straight pieces of a loop that are walls, in turn.
+std::vector<Wall> wallsOf(const CellLoop& loop, double cell_m) {
+  const std::vector<size_t> stay = simplifiedLoop(loop, {}, 2.2 * cell_m);
+  std::vector<Wall> walls;
+  for (size_t k = 0; k < stay.size(); ++k) {
+    const size_t end = k + 1 < stay.size() ? stay[k + 1] : stay[0] + loop.corners.size();
+    if (isWall(loop, stay[k], end, kMinWall_m))
+      walls.push_back({stay[k], end, lineOf(loop, stay[k], end, cell_m)});
+  }
+  return walls;
 }
 
 void addCandidates(const CellLoop& loop, double cell_m, std::vector<Candidate>& candidates) {
-  const std::vector<size_t> stay = simplifiedLoop(loop, {}, 1.6 * cell_m);
-  const size_t n = stay.size();
-  if (n < 4) return;
-  for (size_t k = 0; k < n; ++k) {
-    const size_t here = stay[k], size = loop.corners.size();
-    const size_t before = k > 0 ? stay[k - 1] : stay[n - 1];
-    const size_t after = k + 1 < n ? stay[k + 1] : stay[0];
-    const size_t here_on = here > before ? here : here + size;
-    const size_t to = after > here ? after : after + size;
-    if (cross(loop.corners[here] - loop.corners[before], loop.corners[after] - loop.corners[here]) >= 0)
-      continue;
-    if (!isWall(loop, before, here_on) || !isWall(loop, here, to)) continue;
-    const Eigen::Vector2d in = directionOf(loop, before, here_on), out = directionOf(loop, here, to);
-    if (cross(in, out) > -kMinTurn) continue;
-    candidates.push_back({loop.label, loop.corners[here], in, out});
-    candidates.push_back({loop.label, loop.corners[here], -out, -in});
+  const std::vector<Wall> walls = wallsOf(loop, cell_m);
+  for (size_t k = 0; k < walls.size(); ++k) {
+    const Wall &in = walls[k], &out = walls[(k + 1) % walls.size()];
+    const size_t n = loop.corners.size();
+    const Eigen::Vector2d &last = loop.corners[in.end % n], &first = loop.corners[out.begin % n];
+    const double turn = cross(in.line.direction, out.line.direction);
+    if (turn > -kMinTurn || (first - last).norm() > kMaxCorner_m) continue;
+    // Where the lines of the walls meet: noise takes the loop's own corner off.
+    const Eigen::Vector2d corner =
+        in.line.point + cross(out.line.point - in.line.point, out.line.direction) / turn * in.line.direction;
+    if ((corner - 0.5 * (first + last)).norm() > kMaxCorner_m) continue;
+    candidates.push_back({loop.label, corner, in.line.direction, out.line.direction});
+    candidates.push_back({loop.label, corner, -out.line.direction, -in.line.direction});
   }
 }
 
@@ -84,10 +75,12 @@ class ArmFinder {
       : grid_(grid), config_(config), labels_(labels) {}
 
   std::optional<Arm> find(const Candidate& at) const {
-    const Eigen::Vector2d start = at.corner + 0.5 * grid_.cell_m * (at.along + at.arm);
+    Eigen::Vector2d start = at.corner + 0.5 * grid_.cell_m * (at.along + at.arm);
+    for (int k = 0; k < 4 && labelAt(grid_, labels_, start) == kNoLabel; ++k)
+      start += 0.5 * grid_.cell_m * at.along;
     const int32_t label = labelAt(grid_, labels_, start);
     if (label == kNoLabel) return std::nullopt;
-    const double cut_m = reach(start, at.along, label, kMaxArmWidth_m * 1.5);
+    const double cut_m = reachWithin(grid_, labels_, start, at.along, label, kMaxArmWidth_m * 1.5);
     const double width_m = cut_m * std::abs(cross(at.along, at.arm));
     if (width_m < 4 * grid_.cell_m || width_m > kMaxArmWidth_m) return std::nullopt;
     const Eigen::Vector2d end = start + (cut_m + 0.5 * grid_.cell_m) * at.along;
@@ -104,18 +97,11 @@ class ArmFinder {
   }
 
  private:
-  double reach(const Eigen::Vector2d& from, const Eigen::Vector2d& direction, int32_t label,
-               double max_m) const {
-    const double step_m = 0.5 * grid_.cell_m;
-    double length_m = 0;
-    while (length_m < max_m && labelAt(grid_, labels_, from + (length_m + step_m) * direction) == label)
-      length_m += step_m;
-    return length_m;
-  }
   double acrossAt(const Eigen::Vector2d& p, const Eigen::Vector2d& axis, int32_t label) const {
     const Eigen::Vector2d side(-axis.y(), axis.x());
     if (labelAt(grid_, labels_, p) != label) return 0;
-    return reach(p, side, label, kMaxRay_m) + reach(p, -side, label, kMaxRay_m);
+    return reachWithin(grid_, labels_, p, side, label, kMaxRay_m) +
+           reachWithin(grid_, labels_, p, -side, label, kMaxRay_m);
   }
   bool obstacleNear(const Eigen::Vector2d& p) const {
     const CellStep at = cellAt(grid_, p);
@@ -131,8 +117,8 @@ class ArmFinder {
     const double length_m = std::max(kMinArm_m, config_.corridor_aspect * width_m);
     std::array<double, 3> lengths{};
     for (size_t k = 0; k < 3; ++k)
-      lengths[k] =
-          reach(start + 0.25 * static_cast<double>(k + 1) * cut_m * at.along, at.arm, label, length_m);
+      lengths[k] = reachWithin(grid_, labels_, start + 0.25 * static_cast<double>(k + 1) * cut_m * at.along,
+                               at.arm, label, length_m);
     std::sort(lengths.begin(), lengths.end());
     if (lengths[1] < length_m - grid_.cell_m) return false;
     const Eigen::Vector2d middle = start + 0.5 * cut_m * at.along;
@@ -146,12 +132,19 @@ class ArmFinder {
   // Length, in the direction of the cut, of what lies beyond the cut.
   double besideLength(const Eigen::Vector2d& middle, double width_m, const Candidate& at,
                       int32_t label) const {
+    // Along a corridor of 50 m a ray must not end at a wall that the grid bends by a degree, or at one cell.
+    constexpr double kAngles_rad[] = {-0.02, -0.01, 0, 0.01, 0.02};
     double longest_m = 0;
-    for (const double depth : {0.25, 0.5, 0.75}) {
+    for (const double depth : {0.25, 0.4, 0.5, 0.6, 0.75}) {
       const Eigen::Vector2d p = middle - depth * width_m * at.arm;
       if (labelAt(grid_, labels_, p) != label) break;
-      longest_m =
-          std::max(longest_m, reach(p, at.along, label, kMaxRay_m) + reach(p, -at.along, label, kMaxRay_m));
+      double forward_m = 0, back_m = 0;
+      for (const double angle_rad : kAngles_rad) {
+        const Eigen::Vector2d along = at.along + angle_rad * at.arm;
+        forward_m = std::max(forward_m, reachWithin(grid_, labels_, p, along, label, kMaxRay_m));
+        back_m = std::max(back_m, reachWithin(grid_, labels_, p, -along, label, kMaxRay_m));
+      }
+      longest_m = std::max(longest_m, forward_m + back_m);
     }
     return longest_m;
   }
@@ -160,14 +153,14 @@ class ArmFinder {
   // beside it may be wide; else 0.
   double straightLength(const Eigen::Vector2d& middle, double width_m, const Candidate& at,
                         int32_t label) const {
-    const double onward_m = reach(middle, -at.arm, label, kMaxRay_m);
+    const double onward_m = reachWithin(grid_, labels_, middle, -at.arm, label, kMaxRay_m);
     std::array<double, 6> widths{};
     for (size_t k = 0; k < widths.size(); ++k)
       widths[k] = acrossAt(middle - (0.4 + 0.6 * (static_cast<double>(k) + 0.5) / 6) * onward_m * at.arm,
                            at.arm, label);
     std::sort(widths.begin(), widths.end());
     if (onward_m < 2 * width_m || widths[3] > kSameWidth * width_m) return 0;
-    return onward_m + reach(middle, at.arm, label, kMaxRay_m);
+    return onward_m + reachWithin(grid_, labels_, middle, at.arm, label, kMaxRay_m);
   }
 
   static constexpr double kMaxRay_m = 60;
@@ -175,39 +168,6 @@ class ArmFinder {
   const FreeSpaceGraphConfig& config_;
   const CellLabels& labels_;
 };
-
-// Takes the cells of a cut out of their region. A line of cells that meet at their sides: neither a path of
-// cells nor a ray slips through.
-void block(const StoreyGrid& grid, const Cut& cut, CellLabels& labels, std::vector<size_t>& taken) {
-  const auto take = [&](int x, int y) {
-    if (!grid.contains(x, y) || labels[grid.index(x, y)] == kNoLabel) return;
-    labels[grid.index(x, y)] = kNoLabel;
-    taken.push_back(grid.index(x, y));
-  };
-  const Eigen::Vector2d along = (cut.right - cut.left).normalized();
-  CellStep last = cellAt(grid, cut.left);
-  for (double s_m = 0; s_m < cut.width() + 0.5 * grid.cell_m; s_m += 0.25 * grid.cell_m) {
-    const CellStep cell = cellAt(grid, cut.left + s_m * along);
-    if (cell.x != last.x && cell.y != last.y) take(cell.x, last.y);
-    take(cell.x, cell.y);
-    last = cell;
-  }
-}
-
-// Cells of the cuts go to a region beside them.
-void giveBack(const StoreyGrid& grid, const std::vector<size_t>& taken, CellLabels& labels) {
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const size_t cell : taken) {
-      for (size_t k = 0; k < 4 && labels[cell] == kNoLabel; ++k) {
-        const int x = cellX(grid, cell) + kCellSteps[k].x, y = cellY(grid, cell) + kCellSteps[k].y;
-        if (!grid.contains(x, y) || labels[grid.index(x, y)] == kNoLabel) continue;
-        labels[cell] = labels[grid.index(x, y)];
-        changed = true;
-      }
-    }
-  }
-}
 
 std::vector<Candidate> candidatesOf(const StoreyGrid& grid, const Regions& regions) {
   std::vector<double> area_m2(static_cast<size_t>(regions.count), 0);
@@ -238,16 +198,14 @@ std::vector<Cut> cutCorridorArms(const StoreyGrid& grid, const FreeSpaceGraphCon
     return a.first.beside_m > b.first.beside_m;
   });
   std::vector<Cut> cuts;
-  std::vector<size_t> taken;
+  RegionCutter cutter(grid, regions);
   for (const auto& [first_look, candidate] : arms) {
     const auto arm = finder.find(candidate);  // on what the cuts so far have left
     if (!arm) continue;
     cuts.push_back(arm->cut);
-    block(grid, arm->cut, regions.labels, taken);
+    cutter.cut(arm->cut);
   }
-  if (cuts.empty()) return cuts;
-  splitIntoPieces(grid, regions);
-  giveBack(grid, taken, regions.labels);
+  cutter.finish();
   return cuts;
 }
 

@@ -9,6 +9,7 @@ namespace sgraphs {
 struct FreeSpaceGraphConfig {
   double narrow_ratio = 0.8;
   double kept_ratio = 0.87;
+  double min_passage_m = 0.45;
   double max_passage_m = 4.0;
   double min_cluster_m2 = 1.0;
   double corridor_aspect = 3.0;
@@ -19,6 +20,7 @@ struct FreeSpaceGraphConfig {
     v.field("narrow_ratio", narrow_ratio, 0.3, 1.0,
             "A passage is narrower than this share of the narrower side's widest place");
     v.field("kept_ratio", kept_ratio, 0.3, 1.0, "The same for a passage that was one in the round before");
+    v.field("min_passage_m", min_passage_m, 0.0, 2.0, "Nobody goes through what is narrower");
     v.field("max_passage_m", max_passage_m, 0.5, 50.0,
             "What is wider is one room, however wide its sides are");
     v.field("min_cluster_m2", min_cluster_m2, 0.1, 20.0, "Smaller clusters join their neighbour");

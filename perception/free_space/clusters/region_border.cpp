@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/geometry/convex_polygon.h"
 
@@ -138,6 +139,17 @@ std::vector<size_t> drawnSimply(const CellLoop& loop, const std::vector<size_t>&
   return stay;
 }
 
+// Least squares; the direction is the one of the two that is nearer to `hint`.
+BorderLine lineThrough(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& hint) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& p : points) spread += (p - mean) * (p - mean).transpose();
+  const double angle_rad = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+  const Eigen::Vector2d axis(std::cos(angle_rad), std::sin(angle_rad));
+  return {mean, axis.dot(hint) < 0 ? Eigen::Vector2d(-axis) : axis};
+}
+
 }  // namespace
 
 std::vector<CellLoop> loopsOf(const StoreyGrid& grid, const CellLabels& labels) {
@@ -168,6 +180,49 @@ std::vector<size_t> simplifiedLoop(const CellLoop& loop, const std::vector<size_
     simplify(loop.corners, anchors[k], next, tolerance_m, stays);
   }
   return listed();
+}
+
+BorderLine lineOf(const CellLoop& loop, size_t begin, size_t end, double cell_m) {
+  constexpr size_t kReach = 40;  // sides: noise of a cell turns shorter pieces by several degrees
+  const size_t n = loop.corners.size(), more = end - begin < kReach ? (kReach - (end - begin)) / 2 : 0;
+  std::vector<Eigen::Vector2d> corners;
+  for (size_t i = begin + n - std::min(more, n); i <= end + n + more; ++i)
+    corners.push_back(loop.corners[i % n]);
+  const Eigen::Vector2d from = loop.corners[begin % n], to = loop.corners[end % n];
+  const Eigen::Vector2d chord = (to - from).normalized(), middle = 0.5 * (from + to);
+  // The direction near the chord's that has most corners in one strip of a cell's width.
+  size_t best_count = 0;
+  double best_offset_m = 0;
+  Eigen::Vector2d best = chord;
+  for (int degrees = -24; degrees <= 24; degrees += 2) {
+    const double angle_rad = degrees * M_PI / 180;
+    const Eigen::Vector2d axis =
+        std::cos(angle_rad) * chord + std::sin(angle_rad) * Eigen::Vector2d(-chord.y(), chord.x());
+    std::array<size_t, 40> bins{};
+    const double bin_m = 0.5 * cell_m;
+    for (const Eigen::Vector2d& p : corners) {
+      const double bin = std::floor(cross(axis, p - middle) / bin_m) + 20;
+      if (bin >= 0 && bin < 40) ++bins[static_cast<size_t>(bin)];
+    }
+    for (size_t k = 0; k + 2 < bins.size(); ++k)
+      if (bins[k] + bins[k + 1] + bins[k + 2] > best_count) {
+        best_count = bins[k] + bins[k + 1] + bins[k + 2];
+        best_offset_m = (static_cast<double>(k) - 20 + 1.5) * bin_m;
+        best = axis;
+      }
+  }
+  std::vector<Eigen::Vector2d> near;
+  for (const Eigen::Vector2d& p : corners)
+    if (std::abs(cross(best, p - middle) - best_offset_m) < cell_m) near.push_back(p);
+  return lineThrough(near, best);
+}
+
+bool isWall(const CellLoop& loop, size_t begin, size_t end, double min_length_m) {
+  const size_t n = loop.corners.size();
+  size_t obstacles = 0;
+  for (size_t i = begin; i < end; ++i) obstacles += loop.kinds[i % n] == BorderKind::kObstacle ? 1 : 0;
+  return 2 * obstacles > end - begin &&
+         (loop.corners[end % n] - loop.corners[begin % n]).norm() >= min_length_m;
 }
 
 std::vector<BorderCorner> borderOf(const CellLoop& loop, double cell_m, size_t max_corners) {

@@ -24,6 +24,18 @@ std::vector<CellLoop> loopsOf(const StoreyGrid& grid, const CellLabels& labels);
 std::vector<size_t> simplifiedLoop(const CellLoop& loop, const std::vector<size_t>& fixed,
                                    double tolerance_m);
 
+struct BorderLine {
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();
+  Eigen::Vector2d direction = Eigen::Vector2d::Zero();
+};
+
+// The straight line that most of the sides from one corner to another (end > begin; modulo the size), and of
+// some beside them if those are few, lie on: noise, niches and rounded ends do not turn it.
+BorderLine lineOf(const CellLoop& loop, size_t begin, size_t end, double cell_m);
+
+// Mostly obstacles, and this long.
+bool isWall(const CellLoop& loop, size_t begin, size_t end, double min_length_m);
+
 // A loop as a cluster's border: simple, at most about `max_corners` corners, corners where the kind changes.
 std::vector<BorderCorner> borderOf(const CellLoop& loop, double cell_m, size_t max_corners = 64);
 

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include "common/geometry/convex_polygon.h"
-#include "perception/free_space/clusters/basins.h"
-#include "perception/free_space/clusters/contacts.h"
 #include "perception/free_space/clusters/disjoint_sets.h"
 
 namespace sgraphs {
@@ -34,12 +31,6 @@ void makeDense(Regions& regions) {
     if (n == kNoLabel) n = regions.count++;
     label = n;
   }
-}
-
-void apply(DisjointSets& sets, Regions& regions) {
-  for (int32_t& label : regions.labels)
-    if (label != kNoLabel) label = sets.find(label);
-  makeDense(regions);
 }
 
 // Connected pieces of equal label: piece of each cell, and each piece's label and size.
@@ -88,24 +79,6 @@ std::vector<uint8_t> mainPieces(const Pieces& pieces, int32_t count) {
   for (const int32_t m : main)
     if (m != kNoLabel) is_main[static_cast<size_t>(m)] = 1;
   return is_main;
-}
-
-// The ways between two regions, as if they were one: gaps along a line, and what stands between them.
-bool isOneRoom(const FreeSpaceGraphConfig& config, const std::vector<Cut>& gaps, double side_clearance_m) {
-  double free_m = 0;
-  const Cut *first = &gaps.front(), *last = first;
-  double span_m = 0;
-  for (const Cut& a : gaps) {
-    free_m += a.width();
-    for (const Cut& b : gaps)
-      if ((b.middle() - a.middle()).norm() > span_m) {
-        span_m = (b.middle() - a.middle()).norm();
-        first = &a;
-        last = &b;
-      }
-  }
-  const double line_m = span_m + 0.5 * (first->width() + last->width());
-  return free_m > 0.5 * line_m && 0.5 * free_m > config.narrow_ratio * side_clearance_m;
 }
 
 }  // namespace
@@ -163,28 +136,10 @@ void joinSmallRegions(const StoreyGrid& grid, double min_area_m2, Regions& regio
   makeDense(regions);
 }
 
-void joinThroughParallelGaps(const StoreyGrid& grid, const FreeSpaceGraphConfig& config, Regions& regions) {
-  // A join may lay gaps side by side that were not before.
-  for (int round = 0; round < 4; ++round) {
-    const std::vector<Contact> contacts = contactsOf(grid, regions.labels);
-    const std::vector<double> widest = widestClearances(grid, regions);
-    DisjointSets sets(regions.count);
-    bool joined = false;
-    for (size_t begin = 0; begin < contacts.size();) {
-      const int32_t a = contacts[begin].a, b = contacts[begin].b;
-      std::vector<Cut> gaps;
-      size_t end = begin;
-      for (; end < contacts.size() && std::tie(contacts[end].a, contacts[end].b) == std::tie(a, b); ++end)
-        if (const auto cut = narrowestAt(grid, regions.labels, contacts[end])) gaps.push_back(*cut);
-      begin = end;
-      const double side_m = std::min(widest[static_cast<size_t>(a)], widest[static_cast<size_t>(b)]);
-      if (gaps.size() < 2 || sets.find(a) == sets.find(b) || !isOneRoom(config, gaps, side_m)) continue;
-      sets.join(std::min(sets.find(a), sets.find(b)), std::max(sets.find(a), sets.find(b)));
-      joined = true;
-    }
-    if (!joined) return;
-    apply(sets, regions);
-  }
+void joinRegions(DisjointSets& sets, Regions& regions) {
+  for (int32_t& label : regions.labels)
+    if (label != kNoLabel) label = sets.find(label);
+  makeDense(regions);
 }
 
 void straightenAt(const StoreyGrid& grid, const Cut& cut, int32_t a, int32_t b, Regions& regions) {

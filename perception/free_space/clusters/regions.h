@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "perception/free_space/clusters/cell_labels.h"
-#include "perception/free_space/clusters/free_space_graph_config.h"
+#include "perception/free_space/clusters/disjoint_sets.h"
 
 namespace sgraphs {
 
@@ -20,9 +20,8 @@ std::vector<double> widestClearances(const StoreyGrid& grid, const Regions& regi
 // are dropped.
 void joinSmallRegions(const StoreyGrid& grid, double min_area_m2, Regions& regions);
 
-// Regions that meet through several gaps side by side become one if the gaps together are not narrow, and
-// what stands between them takes less than half of the line: shelves, columns, stacks in one room.
-void joinThroughParallelGaps(const StoreyGrid& grid, const FreeSpaceGraphConfig& config, Regions& regions);
+// Regions of one set become one.
+void joinRegions(DisjointSets& sets, Regions& regions);
 
 // Moves the border of two regions onto the straight line of the cut between them.
 void straightenAt(const StoreyGrid& grid, const Cut& cut, int32_t a, int32_t b, Regions& regions);

@@ -6,16 +6,18 @@
 #include "perception/free_space/clusters/basins.h"
 #include "perception/free_space/clusters/contacts.h"
 #include "perception/free_space/clusters/corridor_arms.h"
+#include "perception/free_space/clusters/narrowness.h"
+#include "perception/free_space/clusters/wall_gaps.h"
 
 namespace sgraphs {
 namespace {
 
 // Cuts at the narrow places, with the borders moved onto them.
-std::vector<Cut> cutAtNarrows(const StoreyGrid& grid, Regions& regions) {
+std::vector<Cut> cutAtNarrows(const StoreyGrid& grid, double min_passage_m, Regions& regions) {
   std::vector<Cut> cuts;
   for (const Contact& contact : contactsOf(grid, regions.labels)) {
     const auto cut = narrowestAt(grid, regions.labels, contact);
-    if (!cut) continue;
+    if (!cut || cut->width() < min_passage_m) continue;
     straightenAt(grid, *cut, contact.a, contact.b, regions);
     cuts.push_back(*cut);
   }
@@ -37,28 +39,20 @@ const Cut* cutAt(const StoreyGrid& grid, const Contact& contact, const std::vect
   return best;
 }
 
-// Turned so that it has left and right as seen when walking from a to b.
-Cut turned(const StoreyGrid& grid, const CellLabels& labels, const Contact& contact, Cut cut) {
-  double balance = 0;
-  for (const uint32_t cell : contact.cells) {
-    const double side = cross(cut.right - cut.left, centerOf(grid, cell) - cut.middle());
-    balance += labels[cell] == contact.b ? side : -side;
-  }
-  if (balance < 0) std::swap(cut.left, cut.right);
-  return cut;
-}
-
 }  // namespace
 
 Segmentation segment(const StoreyGrid& rooms, const FreeSpaceGraphConfig& config,
                      const std::vector<Cut>& former) {
   Segmentation result;
   Regions& regions = result.regions;
-  regions.labels = floodBasins(rooms, config, former, &regions.count);
+  regions.labels = floodBasins(rooms, config, &regions.count);
   joinSmallRegions(rooms, config.min_cluster_m2, regions);
+  joinWhereWide(rooms, config, former, regions);
   joinThroughParallelGaps(rooms, config, regions);
   keepConnected(rooms, regions);
-  std::vector<Cut> cuts = cutAtNarrows(rooms, regions);
+  std::vector<Cut> cuts = cutAtNarrows(rooms, config.min_passage_m, regions);
+  const std::vector<Cut> gaps = cutWallGaps(rooms, config, former, regions);
+  cuts.insert(cuts.end(), gaps.begin(), gaps.end());
   const std::vector<Cut> turns = cutCorridorArms(rooms, config, regions);
   cuts.insert(cuts.end(), turns.begin(), turns.end());
   joinSmallRegions(rooms, config.min_cluster_m2, regions);

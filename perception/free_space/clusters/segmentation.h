@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "perception/free_space/clusters/free_space_graph_config.h"
 #include "perception/free_space/clusters/regions.h"
 
 namespace sgraphs {
@@ -18,7 +19,7 @@ struct Segmentation {
 };
 
 // Free space of a storey in rooms, arms of corridors, and the like. `former` are the cuts of the round before
-// (see floodBasins).
+// (see joinWhereWide).
 Segmentation segment(const StoreyGrid& rooms, const FreeSpaceGraphConfig& config,
                      const std::vector<Cut>& former);
 

@@ -64,6 +64,12 @@ class Plan {
       return in;
     });
   }
+  // Polygons of parts of one hall leave gaps of less than a cell.
+  bool nearRoom(const Eigen::Vector2d& p) const {
+    for (int k = 0; k < 4; ++k)
+      if (inRoom(p + 0.05 * Eigen::Vector2d(k % 2 * 2 - 1, k / 2 * 2 - 1))) return true;
+    return false;
+  }
   const std::vector<std::vector<Eigen::Vector2d>>& rooms() const { return rooms_; }
 
  private:
@@ -169,7 +175,7 @@ PlanGrids planGrids(const simulate::Scene& scene, const PlanView& view) {
         thing[i] |= plan.inThing(p) ? 1 : 0;
       }
       if (wall[i] || (view.seen && !view.seen(center))) continue;
-      if (plan.inRoom(center) || plan.inDoor(center)) rooms.state[i] = CellState::kFree;
+      if (plan.nearRoom(center) || plan.inDoor(center)) rooms.state[i] = CellState::kFree;
     }
   for (int y = 0; y < rooms.height; ++y)
     for (int x = 0; x < rooms.width; ++x)
