@@ -82,7 +82,7 @@ KeyframeRays RayThinner::thin(const Keyframe& keyframe, std::optional<double> bo
     const bool is_hit = range <= max_range_m_;
     const Eigen::Vector3f end =
         is_hit ? p.position_body : Eigen::Vector3f(viewpoint + ray * (max_range_m_ / range));
-    const bool coarse = end.z() < low || end.z() > high;
+    const bool coarse = !is_hit || end.z() < low || end.z() > high;
     if (isNew(group[p.scan], end, coarse)) out.rays.push_back(makeRay(end, p.scan, is_hit));
   }
   for (std::vector<uint32_t>& ends : ends_) std::fill(ends.begin(), ends.end(), 0u);

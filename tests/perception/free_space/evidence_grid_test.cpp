@@ -57,7 +57,7 @@ TEST(ColumnTest, WhatHangsAboveAFreePlaceIsInNobodysWay) {
 }
 
 TEST(ColumnTest, MoreMissesThanHitsClearIt) {
-  EXPECT_EQ(classify(votesOf(0, 8, 2, 2), false, kConfig).rooms, CellState::kObstacle);
+  EXPECT_EQ(classify(votesOf(0, 8, 3, 2), false, kConfig).rooms, CellState::kObstacle);
   EXPECT_EQ(classify(votesOf(0, 8, 2, 3), false, kConfig).rooms, CellState::kFree);
   EXPECT_EQ(classify(votesOf(0, 8, 2, 3), true, kConfig).rooms, CellState::kObstacle) << "a pane";
 }
@@ -107,7 +107,7 @@ TEST(EvidenceGridTest, TakingBackLeavesNothing) {
 EvidenceGrid paneGrid(int hits, int misses) {
   EvidenceGrid grid;
   for (int x = -20; x <= 20; ++x) grid.addWall(x, 0, +1);
-  for (int i = 0; i < hits; ++i) grid.add(viewOf(-20, 0, 20, 0, 0b111100000, 0), +1);
+  for (int i = 0; i < hits; ++i) grid.add(viewOf(-20, 0, 20, 0, 0b001111100, 0), +1);
   for (int i = 0; i < misses; ++i) grid.add(viewOf(-30, -10, 30, 10, 0, 0b111111111), +1);
   return grid;
 }
