@@ -8,6 +8,9 @@
 #include "backend/levelling.h"
 #include "backend/planes/plane_layer.h"
 #include "backend/planes/shared_information.h"
+#include "backend/rooms/floor_layer.h"
+#include "backend/rooms/room_changes.h"
+#include "backend/rooms/room_layer.h"
 
 namespace sgraphs {
 namespace {
@@ -61,14 +64,20 @@ RelativePose anchorOf(KeyframeId id, const std::vector<RelativePose>& measuremen
 class Backend::Impl {
  public:
   explicit Impl(const BackendConfig& config)
-      : builder_(solverOptions(config)), planes_(config.planes, builder_) {}
+      : builder_(solverOptions(config)),
+        planes_(config.planes, builder_),
+        rooms_(config.rooms, builder_, planes_),
+        floors_(config.floors, config.rooms.wall_sigma_m, config.rooms.along_sigma_m, builder_) {}
 
   RoundOutput step(RoundInput input) {
     RoundOutput output;
     if (input.round >= kRelevelRound) relevelOnce();
-    bool whole = !input.keyframe && !builder_.solver().settled();
     const bool idle = !input.keyframe;
-    if (!idle) whole = add(std::move(input), output);
+    const std::optional<Rooms> rooms = std::move(input.rooms);
+    if (input.free_space) builder_.setFreeSpace(std::move(input.free_space));
+    bool whole = !idle && add(std::move(input), output);
+    if (rooms && !graph().keyframes.empty()) whole = addRooms(*rooms, output) || whole;
+    whole = whole || (idle && !builder_.solver().settled());
     solve(whole, idle, output);
     announce(output);
     output.graph_digest = graph().digest();
@@ -109,14 +118,28 @@ class Backend::Impl {
     return whole;
   }
 
+  // True if the round needs the whole graph.
+  bool addRooms(const Rooms& rooms, RoundOutput& output) {
+    const auto refuse = [&](const std::vector<std::string>& lines) {
+      output.refused.insert(output.refused.end(), lines.begin(), lines.end());
+    };
+    refuse(floors_.assign(rooms));
+    // Places in a map that was not levelled yet are no places of this one.
+    if (rooms.round < kRelevelRound) return false;
+    const RoomLayer::Outcome outcome = rooms_.apply(rooms);
+    refuse(outcome.refused);
+    floors_.bind(rooms);
+    return outcome.merged;
+  }
+
   void addKeyframe(Keyframe keyframe, const Admission& admission) {
     KeyframeNode node;
     node.id = keyframe.id;
     node.time = keyframe.time;
     node.T_odom_body = keyframe.T_odom_body;
-    // The storey of the start is f0; later storeys come from measurements.
-    node.floor = FloorId{0};
-    builder_.addFloor(node.floor);
+    // The storey of the start is f0; that of a later keyframe is the last one's until it is told otherwise.
+    node.floor = graph().keyframes.empty() ? FloorId{0} : graph().keyframes.rbegin()->second.floor;
+    if (node.floor.valid()) builder_.addFloor(node.floor);
     if (graph().keyframes.empty()) {
       node.T_map_body.rotation =
           admission.has_up ? levelledRotation(keyframe.up_body) : Eigen::Quaterniond::Identity();
@@ -161,17 +184,23 @@ class Backend::Impl {
     output.T_map_odom = newest.T_map_body * newest.T_odom_body.inverse();
     for (const auto& [id, node] : graph().keyframes) {
       const auto known = announced_.find(id);
-      if (known != announced_.end() && !moved(known->second, node.T_map_body)) continue;
-      announced_[id] = node.T_map_body;
+      const bool still = known != announced_.end() && known->second.second == node.floor &&
+                         !moved(known->second.first, node.T_map_body);
+      if (still) continue;
+      announced_[id] = {node.T_map_body, node.floor};
       output.changed.push_back(id);
     }
     output.changed_planes = planes_.takeChanged();
+    output.changed_rooms = room_changes_.take(graph());
   }
 
   GraphBuilder builder_;
   PlaneLayer planes_;
+  RoomLayer rooms_;
+  FloorLayer floors_;
+  RoomChanges room_changes_;
   bool relevelled_ = false;
-  std::map<KeyframeId, SE3> announced_;  // T_map_body as it was last made known
+  std::map<KeyframeId, std::pair<SE3, FloorId>> announced_;  // T_map_body as it was last made known, storey
 };
 
 Backend::Backend(const BackendConfig& config) : impl_(std::make_unique<Impl>(config)) {}

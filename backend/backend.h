@@ -53,9 +53,11 @@ class Backend {
   // (within its iterations; the next one goes on), so a run ends with idle rounds until nothing changes.
   RoundOutput step(RoundInput input);
   const SituationalGraph& graph() const;
-  // By kind: odometry, neighbour, loop, up, observes, plane_up, faces, same_height. dof counts residuals;
-  // those of the whole graph are their sum less 6 per keyframe but the first and, where there is an up
-  // factor, 2. chi2 is at the present states, without robust loss.
+  // By kind: odometry, neighbour, loop, up, observes, plane_up, faces, same_height, room_wall (finite),
+  // room_wall_infinite (and polygons), room_shape, floor_wall, floor_height, floor_room. dof counts
+  // residuals; those of the whole graph are their sum less 6 per keyframe but the first, 3 per plane, 2 per
+  // bound centre, 1 per bound height and, where there is an up factor, 2. chi2 is at the present states,
+  // without robust loss.
   std::map<std::string, FactorStatistics> factorStatistics() const;
   // Marginal covariances of T_map_body (tangent of body) given the first keyframe, whose own is zero. Costs a
   // factorisation of the whole graph.

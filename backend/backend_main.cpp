@@ -20,12 +20,13 @@ int main(int argc, char** argv) {
     hooks.publish_status = [&node] { node.publishStatus(); };
     hooks.finish = [&node](const std::string& why) { node.finish(why); };
     hooks.overdue = [&node] { return node.streamEnded() && !node.done(); };
+    hooks.awaited = [&node] { return node.awaitedRound(); };
+    hooks.give_up_awaited = [&node] { node.giveUpAwaited(); };
     runLoop(bus, setup, hooks);
     if (!setup.output_dir.empty()) writeOutputs(recordOf(node, setup.config), setup.output_dir);
     std::printf("graph_digest %s\nrounds %lld\n", node.result().graph_digest.c_str(),
                 static_cast<long long>(node.result().rounds));
-    if (node.result().reproducible) return kExitDone;
-    std::fprintf(stderr, "%s: not reproducible: %s\n", text.name.c_str(), node.result().why_not.c_str());
-    return kExitNotReproducible;
+    return leaveAfterEnd(
+        text, [&node] { node.repeatEnd(); }, node.result().why_not);
   });
 }

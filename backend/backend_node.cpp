@@ -8,6 +8,7 @@
 #include "backend/graph_messages.h"
 #include "common/bus/status.h"
 #include "lcmtypes/convert/convert.h"
+#include "lcmtypes/convert/convert_layers.h"
 
 namespace sgraphs {
 namespace {
@@ -15,14 +16,17 @@ namespace {
 // Planes may come before the keyframe's own message does, by no more than what fits the queues.
 constexpr int64_t kMaxPlanesAhead = 100;
 
-// What a round waits for, and by which id. Free space, rooms and loops join as further rows; a row
-// counts if SESSION lists its stage.
+// What a round waits for: of its keyframe, and of the round before. Loops join as a further row; a row counts
+// if SESSION lists its stage.
 struct JoinedInput {
   const char* channel;
   const char* stage;
 };
 constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry"},
                                             {channels::kKeyframePlanes.name, "planes"}};
+constexpr JoinedInput kKeyedByRound[] = {{channels::kFreeSpace.name, "free-space"},
+                                         {channels::kRooms.name, "rooms"}};
+constexpr const char* kStages[] = {"odometry", "planes", "free-space", "rooms", "backend"};
 
 }  // namespace
 
@@ -34,6 +38,8 @@ BackendNode::BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode)
   listen(channels::kOdometry, &BackendNode::onOdometry);
   listen(channels::kKeyframe, &BackendNode::onKeyframe);
   listen(channels::kKeyframePlanes, &BackendNode::onPlanes);
+  listen(channels::kFreeSpace, &BackendNode::onFreeSpace);
+  listen(channels::kRooms, &BackendNode::onRooms);
   listen(channels::kOdometryEnd, &BackendNode::onOdometryEnd);
   listen(channels::kPlanesEnd, &BackendNode::onPlanesEnd);
   listen(channels::kStreamEnd, &BackendNode::onStreamEnd);
@@ -55,7 +61,7 @@ void BackendNode::onSession(const session_t& m) {
   session_ = session;
   publisher_.setSession(session->id);
   for (const std::string& stage : session->stages)
-    if (stage != "odometry" && stage != "planes" && stage != "backend")
+    if (std::find(std::begin(kStages), std::end(kStages), stage) == std::end(kStages))
       spdlog::warn("SESSION lists stage '{}', which this version does not have: rounds go on without it",
                    stage);
   early_.open();
@@ -109,6 +115,35 @@ void BackendNode::onPlanes(const keyframe_planes_t& m) {
   advance();
 }
 
+void BackendNode::onFreeSpace(const free_space_t& m) {
+  const std::string channel = channels::kFreeSpace.name;
+  if (done() || !gate_.accept(channel, m.header)) return;
+  bool refused = false;
+  auto chunks = free_space_assembly_.add(m, refused);
+  if (refused || m.round >= rounds_)
+    return gate_.reject(channel, "a round that cannot be, or chunks that do not match");
+  if (!chunks) return;
+  if (!joiner_.arrived({channel, m.round, m.header.seq})) return gate_.reject(channel, "its round is closed");
+  free_space_held_[m.round] = std::move(*chunks);
+  advance();
+}
+
+void BackendNode::onRooms(const rooms_t& m) {
+  const std::string channel = channels::kRooms.name;
+  if (done() || !gate_.accept(channel, m.header)) return;
+  bool refused = false;
+  const auto chunks = rooms_assembly_.add(m, refused);
+  if (refused || m.round >= rounds_)
+    return gate_.reject(channel, "a round that cannot be, or chunks that do not match");
+  if (!chunks) return;
+  std::optional<Rooms> rooms = fromMessages(*chunks);
+  if (!rooms) return gate_.reject(channel, "content that cannot be right");
+  if (!joiner_.arrived({channel, m.round, m.header.seq})) return gate_.reject(channel, "its round is closed");
+  rooms_held_[m.round] = std::move(*rooms);
+  rooms_why_not_ = m.why_not;
+  advance();
+}
+
 void BackendNode::onSchedule(const round_schedule_t& m) {
   const std::string channel = channels::kRoundSchedule.name;
   if (done() || !gate_.accept(channel, m.header)) return;
@@ -141,11 +176,14 @@ void BackendNode::onPlanesEnd(const stream_end_t& m) {
 void BackendNode::finishIfAllEnded() {
   if (!odometry_end_why_not_ || (takesPart("planes") && !planes_end_why_not_)) return;
   // A later stage repeats what it was told and adds to it.
-  finish(planes_end_why_not_ ? *planes_end_why_not_ : *odometry_end_why_not_);
+  ending_ = planes_end_why_not_ ? *planes_end_why_not_ : *odometry_end_why_not_;
+  input_ended_ = true;
+  advance();
 }
 
 void BackendNode::advance() {
   while (session_ && !pending_.empty() && workOff(pending_.front())) pending_.pop_front();
+  if (ending_ && (pending_.empty() || !session_ || forced_)) endRun();
 }
 
 bool BackendNode::workOff(const OdometryEstimate& estimate) {
@@ -162,19 +200,29 @@ bool BackendNode::workOff(const OdometryEstimate& estimate) {
     // overtook each other arrive.
     if (!keyframeRound(own ? &estimate : nullptr, !own || pending_.size() > 1 || input_ended_)) return false;
   }
-  if (rounds_ > 0 && estimate.time - last_round_ >= kIdleAfter) runRound({rounds_, estimate.time, {}}, {});
+  if (rounds_ > 0 && estimate.time - last_round_ >= kIdleAfter && !idleRound(estimate.time)) return false;
   publish(bus_, channels::kPose,
           toPoseMessage(estimate.time, newest_round_.T_map_odom * estimate.T_odom_body, estimate.twist_body));
   scans_.push_back(estimate);
   return true;
 }
 
-// Keyframes whose own ODOMETRY is lost and that no later one announced.
-void BackendNode::workOffKeyframesLeft() {
+// Keyframes whose own ODOMETRY is lost and that no later one announced. False if a round has to wait.
+bool BackendNode::workOffKeyframesLeft() {
   for (int64_t held = 0; session_ && (held = assembly_.firstFrom(next_keyframe_)) >= 0;) {
     next_keyframe_ = held;
-    keyframeRound(nullptr, true);
+    if (!keyframeRound(nullptr, true)) return false;
   }
+  return true;
+}
+
+bool BackendNode::idleRound(Time time) {
+  const RoundJoiner::Wants wants = feedbackWanted();
+  if (!joiner_.ready(rounds_, wants)) return false;
+  const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
+  takeFeedback(joined);
+  runRound({.round = rounds_, .time = time, .keyframe = {}}, joined);
+  return true;
 }
 
 bool BackendNode::takesPart(const std::string& stage) const {
@@ -189,20 +237,53 @@ bool BackendNode::planesLost(int64_t keyframe) const {
   return input_ended_ || planes_end_why_not_ || newest_planes_ >= keyframe + 2;
 }
 
-RoundJoiner::Wants BackendNode::wantsOf(int64_t keyframe) const {
+// What is made of the newest round's map.
+RoundJoiner::Wants BackendNode::feedbackWanted() const {
   RoundJoiner::Wants wants;
-  for (const JoinedInput& input : kKeyedByKeyframe)
-    if (takesPart(input.stage)) wants[input.channel] = keyframe;
+  if (rounds_ == 0 || feedback_taken_ == rounds_ - 1 || forced_) return wants;
+  for (const JoinedInput& input : kKeyedByRound)
+    if (takesPart(input.stage)) wants[input.channel] = rounds_ - 1;
   return wants;
 }
 
+int64_t BackendNode::awaitedRound() const {
+  const bool due = !pending_.empty() || ending_;
+  return done() || !due || joiner_.ready(rounds_, feedbackWanted()) ? -1 : rounds_ - 1;
+}
+
+void BackendNode::giveUpAwaited() {
+  for (const auto& [channel, round] : feedbackWanted()) joiner_.lost(channel, round);
+  advance();
+}
+
+// Hands over what has joined: the free space is brought up to date, of the rooms the newest count.
+void BackendNode::takeFeedback(const RoundJoiner::Joined& joined) {
+  for (const std::string& channel : joined.missing) ++missing_[channel];
+  feedback_taken_ = rounds_ - 1;
+  for (const RoundJoiner::Output& output : joined.outputs) {
+    if (output.input == channels::kFreeSpace.name) {
+      auto next = std::make_shared<FreeSpace>(free_space_ ? *free_space_ : FreeSpace{});
+      if (applyMessages(free_space_held_.at(output.key), *next))
+        free_space_ = std::move(next);
+      else
+        gate_.reject(output.input, "content that cannot be right");
+      free_space_held_.erase(output.key);
+    } else if (output.input == channels::kRooms.name) {
+      rooms_ = std::move(rooms_held_.at(output.key));
+      rooms_held_.erase(output.key);
+    }
+  }
+}
+
 bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) {
-  const RoundJoiner::Wants wants = wantsOf(next_keyframe_);
+  RoundJoiner::Wants wants = feedbackWanted();
+  for (const JoinedInput& input : kKeyedByKeyframe)
+    if (takesPart(input.stage)) wants[input.channel] = next_keyframe_;
   if (overdue) joiner_.lost(channels::kKeyframe.name, next_keyframe_);
   if (planesLost(next_keyframe_)) joiner_.lost(channels::kKeyframePlanes.name, next_keyframe_);
   if (!joiner_.ready(rounds_, wants)) return false;
   const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
-  for (const std::string& channel : joined.missing) ++missing_[channel];
+  takeFeedback(joined);
   RoundInput input{.round = rounds_, .time = {}, .keyframe = joinedKeyframe(estimate)};
   // Those of an earlier round, late in live mode, say nothing of this keyframe: they are left out.
   const auto joins = [&](const RoundJoiner::Output& o) {
@@ -234,6 +315,8 @@ void BackendNode::runRound(RoundInput input, const RoundJoiner::Joined& joined) 
   const Time time = input.time;
   const bool idle = !input.keyframe;
   if (mode_ == RoundJoiner::Mode::kLive) publishSchedule(input, joined);
+  input.free_space = free_space_;
+  input.rooms = std::exchange(rooms_, std::nullopt);
   const Stopwatch watch;
   newest_round_ = core_.step(std::move(input));
   latency_.add(watch.elapsedUs());
@@ -268,14 +351,30 @@ void BackendNode::publishSnapshot() {
 
 void BackendNode::finish(const std::string& why_not) {
   if (done()) return;
-  input_ended_ = true;
+  forced_ = input_ended_ = true;
+  ending_ = why_not;
   advance();
-  workOffKeyframesLeft();
+}
+
+// Idle rounds until rooms and poses have come to rest.
+void BackendNode::endRun() {
+  if (done() || (!workOffKeyframesLeft() && !forced_)) return;
   const Time end = scans_.empty() ? last_round_ : scans_.back().time;
-  for (int i = 0; rounds_ > 0 && i < kMaxFinalRounds; ++i) {
-    runRound({rounds_, end, {}}, {});
-    if (newest_round_.changed.empty() && newest_round_.changed_planes.empty()) break;
+  const int quiet = takesPart("rooms") ? kQuietRounds : 1;
+  while (rounds_ > 0 && final_rounds_ < kMaxFinalRounds && quiet_rounds_ < quiet) {
+    if (!idleRound(end)) {
+      if (!forced_) return;
+      break;  // a recorded schedule asks for what will not come
+    }
+    ++final_rounds_;
+    const bool changed = !newest_round_.changed.empty() || !newest_round_.changed_planes.empty() ||
+                         newest_round_.changed_rooms;
+    quiet_rounds_ = changed ? 0 : quiet_rounds_ + 1;
   }
+  conclude(end);
+}
+
+void BackendNode::conclude(Time end) {
   if (rounds_ > 0) publishSnapshot();
   run_result_t m{};
   m.header.utime = end.us;
@@ -288,10 +387,15 @@ void BackendNode::finish(const std::string& why_not) {
   for (const auto& [channel, n] : missing_)
     because(std::to_string(n) + " " + channel + " incomplete when their round ran");
   if (!session_) because("no SESSION arrived");
-  because(why_not);
+  because(*ending_);
+  because(rooms_why_not_);
   m.reproducible = m.why_not.empty();
   publisher_.send(channels::kRunResult, m);
   result_ = std::move(m);
+}
+
+void BackendNode::repeatEnd() {
+  if (result_) publish(bus_, channels::kRunResult, *result_);
 }
 
 void BackendNode::publishStatus() {

@@ -16,6 +16,7 @@
 #include "common/bus/input_gate.h"
 #include "common/bus/publisher.h"
 #include "common/types/session.h"
+#include "lcmtypes/convert/chunks.h"
 #include "lcmtypes/convert/keyframe_assembly.h"
 
 namespace sgraphs {
@@ -35,14 +36,23 @@ class BackendNode {
  public:
   static constexpr Duration kIdleAfter{5'000'000};
   static constexpr int kMaxFinalRounds = 5;
+  // Rooms are accepted on stable evidence: so many final rounds in a row must change nothing.
+  static constexpr int kQuietRounds = 2;
   static constexpr int64_t kSnapshotEvery = 50;  // rounds
 
   // The bus must outlive the node. In live mode ROUND_SCHEDULE is written, else it is read and obeyed.
   BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode = RoundJoiner::Mode::kWait);
 
-  // Ends a run whose ODOMETRY_END or PLANES_END does not come: works off what is held, runs the final rounds,
-  // publishes RUN_RESULT. `why_not`: why another run may differ; empty if it may not.
+  // Ends a run whose ODOMETRY_END or PLANES_END does not come: works off what is held without waiting for
+  // anything, runs the final rounds, publishes RUN_RESULT. `why_not`: why another run may differ; empty if it
+  // may not.
   void finish(const std::string& why_not);
+  // The round whose FREE_SPACE and ROOMS the next one waits for; -1: none. What a datagram lost is sent by
+  // nobody again: the caller, who has a clock, lets the round go on without.
+  int64_t awaitedRound() const;
+  void giveUpAwaited();
+  // Sends RUN_RESULT once more, for a reader that lost it (same sequence number).
+  void repeatEnd();
   void publishStatus();
 
   bool done() const { return result_.has_value(); }
@@ -69,6 +79,8 @@ class BackendNode {
   void onOdometry(const odometry_t& m);
   void onKeyframe(const keyframe_t& m);
   void onPlanes(const keyframe_planes_t& m);
+  void onFreeSpace(const free_space_t& m);
+  void onRooms(const rooms_t& m);
   void onSchedule(const round_schedule_t& m);
   void onOdometryEnd(const stream_end_t& m);
   void onPlanesEnd(const stream_end_t& m);
@@ -76,13 +88,17 @@ class BackendNode {
 
   void advance();
   bool workOff(const OdometryEstimate& estimate);
-  void workOffKeyframesLeft();
+  bool workOffKeyframesLeft();
+  bool idleRound(Time time);
+  void endRun();
+  void conclude(Time end);
   bool keyframeRound(const OdometryEstimate* estimate, bool overdue);
   std::optional<Keyframe> joinedKeyframe(const OdometryEstimate* estimate);
   void finishIfAllEnded();
   bool takesPart(const std::string& stage) const;
   bool planesLost(int64_t keyframe) const;
-  RoundJoiner::Wants wantsOf(int64_t keyframe) const;
+  RoundJoiner::Wants feedbackWanted() const;
+  void takeFeedback(const RoundJoiner::Joined& joined);
   void runRound(RoundInput input, const RoundJoiner::Joined& joined);
   void publishSchedule(const RoundInput& input, const RoundJoiner::Joined& joined);
   void publishSnapshot();
@@ -109,9 +125,22 @@ class BackendNode {
   std::vector<OdometryEstimate> scans_;
   std::map<int64_t, KeyframePlanes> planes_;  // of keyframes whose rounds have not run, by keyframe
   int64_t newest_planes_ = -1;
+  // Made of an earlier round's map, by that round: not joined yet, then joined and not yet handed in.
+  RoundAssembly<free_space_t> free_space_assembly_;
+  RoundAssembly<rooms_t> rooms_assembly_;
+  std::map<int64_t, std::vector<free_space_t>> free_space_held_;
+  std::map<int64_t, Rooms> rooms_held_;
+  std::shared_ptr<const FreeSpace> free_space_;
+  std::optional<Rooms> rooms_;
+  int64_t feedback_taken_ = -1;             // newest round
+  std::string rooms_why_not_;               // as the newest message has it
   std::map<std::string, int64_t> missing_;  // outputs that rounds went without, by channel
   std::optional<std::string> odometry_end_why_not_, planes_end_why_not_;  // of the stages that have ended
   bool input_ended_ = false;
+  std::optional<std::string> ending_;  // the input is complete; why another run may differ
+  bool forced_ = false;                // nothing is waited for any more
+  int final_rounds_ = 0;
+  int quiet_rounds_ = 0;  // final rounds in a row that changed nothing
   bool stream_ended_ = false;
   std::optional<run_result_t> result_;
   LatencyHistogram latency_;

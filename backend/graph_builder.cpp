@@ -46,6 +46,11 @@ int64_t GraphBuilder::add(const std::string& kind, std::unique_ptr<ceres::CostFu
   return id;
 }
 
+void GraphBuilder::drop(int64_t factor) {
+  solver_.setEnabled(factors_.at(factor).factor, false);
+  factors_.erase(factor);
+}
+
 void GraphBuilder::addKeyframe(KeyframeNode node) {
   const StateId state = solver_.addPose(node.T_map_body);
   if (graph_.keyframes.empty()) solver_.hold(state);
@@ -124,15 +129,14 @@ void GraphBuilder::mergePlanes(PlaneId from, PlaneId into) {
     solver_.rebind(factors_.at(factor.id).factor, old_state, state);
     factor.plane = into;
   }
-  const auto drop = [this](int64_t id) {
-    solver_.setEnabled(factors_.at(id).factor, false);
-    factors_.erase(id);
-    return true;
-  };
   const bool has_up = std::any_of(graph_.plane_ups.begin(), graph_.plane_ups.end(),
                                   [&](const PlaneUpFactor& f) { return f.plane == into; });
   if (has_up)
-    std::erase_if(graph_.plane_ups, [&](const PlaneUpFactor& f) { return f.plane == from && drop(f.id); });
+    std::erase_if(graph_.plane_ups, [&](const PlaneUpFactor& f) {
+      const bool void_now = f.plane == from;
+      if (void_now) drop(f.id);
+      return void_now;
+    });
   for (PlaneUpFactor& f : graph_.plane_ups) {
     if (f.plane != from) continue;
     solver_.rebind(factors_.at(f.id).factor, old_state, state);
@@ -158,6 +162,7 @@ void GraphBuilder::mergePlanes(PlaneId from, PlaneId into) {
   };
   rebindPairs(graph_.faces);
   rebindPairs(graph_.same_heights);
+  mergeInRooms(from, into, old_state, state);
 
   PlaneNode& kept = graph_.planes.at(into);
   const PlaneNode& gone = graph_.planes.at(from);
@@ -202,6 +207,7 @@ void GraphBuilder::takeOver(const std::vector<StateId>& states) {
   for (const StateId state : states) {
     if (const auto keyframe = keyframe_of_state_.find(state); keyframe != keyframe_of_state_.end())
       graph_.keyframes.at(keyframe->second).T_map_body = solver_.pose(state);
+    takeOverCenter(state);
     const auto found = plane_of_state_.find(state);
     if (found == plane_of_state_.end()) continue;
     PlaneNode& plane = graph_.planes.at(found->second);
@@ -249,7 +255,8 @@ std::map<PlaneId, Eigen::Matrix3d> GraphBuilder::planeCovariances() const {
 std::map<std::string, FactorStatistics> GraphBuilder::statistics() const {
   std::map<std::string, FactorStatistics> statistics;
   for (const char* kind :
-       {"odometry", "neighbour", "loop", "up", "observes", "plane_up", "faces", "same_height"})
+       {"odometry", "neighbour", "loop", "up", "observes", "plane_up", "faces", "same_height", "room_wall",
+        "room_wall_infinite", "room_shape", "floor_wall", "floor_height", "floor_room"})
     statistics[kind] = {};
   for (const auto& [id, registered] : factors_) {
     FactorStatistics& kind = statistics[registered.kind];

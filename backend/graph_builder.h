@@ -36,6 +36,30 @@ class GraphBuilder {
   void addFaces(PlaneId a, PlaneId b, double sigma_rad);
   void addSameHeight(PlaneId a, PlaneId b, double sigma_m);
 
+  // Nodes of the upper layers. Rooms and storeys have states once something binds them.
+  void putRoom(const RoomObservation& seen);  // new, or seen again
+  void removeRoom(RoomId id);                 // with its factors
+  void setFloor(KeyframeId keyframe, FloorId floor) { graph_.keyframes.at(keyframe).floor = floor; }
+  void setFloor(PlaneId plane, FloorId floor) { graph_.planes.at(plane).floor = floor; }
+  void removeFloor(FloorId id);  // with its factors; nothing may be on it
+  void setDoorways(std::map<PassageId, Doorway> doorways) { graph_.doorways = std::move(doorways); }
+  void setFreeSpace(std::shared_ptr<const FreeSpace> free_space) {
+    graph_.free_space = std::move(free_space);
+  }
+  // Something holds the centre.
+  bool hasFactor(const CenterOf& of) const;
+  // Where no factor holds it, it is where it was seen; nothing otherwise.
+  void setCenter(const CenterOf& of, const Eigen::Vector2d& center_map);
+  void setHeight(FloorId floor, bool has_height, double z_m);
+
+  // Factors of the upper layers: the id is given here.
+  void addCenterWalls(CenterWallsFactor factor);
+  void addCenterAnchor(CenterAnchorFactor factor);
+  void addRoomShape(RoomShapeFactor factor);
+  void addFloorHeight(FloorHeightFactor factor);
+  void addFloorRoom(FloorRoomFactor factor);
+  void removeFactor(int64_t id);  // one of these
+
   // All that is known of `from` becomes knowledge of `into`, which lives on; `from` is no node any more.
   void mergePlanes(PlaneId from, PlaneId into);
 
@@ -69,6 +93,10 @@ class GraphBuilder {
   int64_t add(const std::string& kind, std::unique_ptr<ceres::CostFunction> cost, std::vector<StateId> states,
               std::optional<double> cauchy_scale);
   StateId upState();
+  StateId centerState(const CenterOf& of);
+  void drop(int64_t factor);
+  void mergeInRooms(PlaneId from, PlaneId into, StateId old_state, StateId state);
+  void takeOverCenter(StateId state);
   void takeOver(const std::vector<StateId>& states);
 
   SituationalGraph graph_;
@@ -77,6 +105,10 @@ class GraphBuilder {
   std::map<PlaneId, StateId> plane_states_;
   std::map<StateId, KeyframeId> keyframe_of_state_;
   std::map<StateId, PlaneId> plane_of_state_;
+  std::map<RoomId, StateId> room_states_;
+  std::map<FloorId, StateId> floor_states_, height_states_;
+  std::map<StateId, CenterOf> center_of_state_;
+  std::map<StateId, FloorId> height_of_state_;
   StateId up_state_ = -1;
   std::map<int64_t, Registered> factors_;  // by id of the graph's factors
   int64_t next_factor_ = 0;

@@ -1,129 +1,10 @@
 #include "backend/graph/situational_graph.h"
 
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-
-#include "common/base/sha256.h"
 
 namespace sgraphs {
 namespace {
-
-// Collects the canonical bytes of the snapshot and hashes them in blocks: a graph of 5000 keyframes has
-// half a million numbers, and the digest is taken every round.
-class CanonicalBytes {
- public:
-  void add(int64_t value) { append(&value, sizeof value); }
-  void add(double value) { append(&value, sizeof value); }
-  void add(const SE3& T) {
-    add(T.translation);
-    add(T.rotation.coeffs());
-  }
-  template <typename Derived>
-  void add(const Eigen::DenseBase<Derived>& values) {
-    for (Eigen::Index r = 0; r < values.rows(); ++r)
-      for (Eigen::Index c = 0; c < values.cols(); ++c) add(values(r, c));
-  }
-  std::string hex() {
-    flush();
-    return sha_.hex();
-  }
-
- private:
-  void append(const void* data, size_t size) {
-    if (used_ + size > buffer_.size()) flush();
-    std::memcpy(buffer_.data() + used_, data, size);
-    used_ += size;
-  }
-  void flush() {
-    sha_.addBytes({buffer_.data(), used_});
-    used_ = 0;
-  }
-
-  Sha256 sha_;
-  std::array<uint8_t, 1 << 14> buffer_{};
-  size_t used_ = 0;
-};
-
-void addCovariance(const Matrix6d& covariance, CanonicalBytes& bytes) {
-  for (int r = 0; r < 6; ++r)
-    for (int c = r; c < 6; ++c) bytes.add(covariance(r, c));
-}
-
-template <typename Factor>
-void addPlanePairs(const std::vector<Factor>& factors, double Factor::*sigma, CanonicalBytes& bytes) {
-  bytes.add(static_cast<int64_t>(factors.size()));
-  for (const Factor& factor : factors) {
-    bytes.add(factor.id);
-    bytes.add(factor.a.value);
-    bytes.add(factor.b.value);
-    bytes.add(factor.*sigma);
-  }
-}
-
-void addPlanes(const SituationalGraph& graph, CanonicalBytes& bytes) {
-  bytes.add(static_cast<int64_t>(graph.planes.size()));
-  for (const auto& [id, plane] : graph.planes) {
-    bytes.add(id.value);
-    bytes.add(static_cast<int64_t>(plane.label));
-    bytes.add(plane.floor.value);
-    bytes.add(plane.normal_map);
-    bytes.add(plane.anchor_map);
-    bytes.add(plane.offset_m);
-    bytes.add(plane.covariance);
-    bytes.add(plane.centroid_map);
-    bytes.add(static_cast<int64_t>(plane.polygon_map.size()));
-    for (const Eigen::Vector3d& corner : plane.polygon_map) bytes.add(corner);
-    bytes.add(plane.num_observations);
-  }
-  for (const auto& [from, to] : graph.merged_planes) {
-    bytes.add(from.value);
-    bytes.add(to.value);
-  }
-}
-
-void addFactors(const SituationalGraph& graph, CanonicalBytes& bytes) {
-  // Kinds in the order of their enumeration, within a kind in the order of their ids (they are monotonic).
-  for (const RelativePoseKind kind :
-       {RelativePoseKind::kOdometry, RelativePoseKind::kNeighbour, RelativePoseKind::kLoop}) {
-    bytes.add(static_cast<int64_t>(kind));
-    for (const RelativePoseFactor& factor : graph.relative_poses) {
-      const RelativePose& z = factor.measurement;
-      if (z.kind != kind) continue;
-      bytes.add(factor.id);
-      bytes.add(z.from.value);
-      bytes.add(z.to.value);
-      bytes.add(z.T_from_to);
-      addCovariance(z.covariance, bytes);
-    }
-  }
-  bytes.add(static_cast<int64_t>(graph.observations.size()));
-  for (const ObservationFactor& factor : graph.observations) {
-    bytes.add(factor.id);
-    bytes.add(factor.keyframe.value);
-    bytes.add(factor.plane.value);
-    bytes.add(factor.measurement.normal_body);
-    bytes.add(factor.measurement.centroid_body);
-    bytes.add(factor.measurement.covariance);
-  }
-  bytes.add(static_cast<int64_t>(graph.plane_ups.size()));
-  for (const PlaneUpFactor& factor : graph.plane_ups) {
-    bytes.add(factor.id);
-    bytes.add(factor.plane.value);
-    bytes.add(static_cast<int64_t>(factor.level));
-    bytes.add(factor.sigma_rad);
-  }
-  addPlanePairs(graph.faces, &FacesFactor::sigma_rad, bytes);
-  addPlanePairs(graph.same_heights, &SameHeightFactor::sigma_m, bytes);
-  bytes.add(static_cast<int64_t>(graph.ups.size()));
-  for (const UpFactor& factor : graph.ups) {
-    bytes.add(factor.id);
-    bytes.add(factor.keyframe.value);
-    bytes.add(factor.up_body);
-    bytes.add(factor.sigma_rad);
-  }
-}
 
 [[noreturn]] void broken(const std::string& what) {
   throw std::logic_error("situational graph: " + what);
@@ -150,6 +31,21 @@ void checkNodes(const SituationalGraph& graph) {
     if (!floor.center_map.allFinite() || !std::isfinite(floor.z_m))
       broken("floor " + id.str() + " is not finite");
   }
+  for (const auto& [id, room] : graph.rooms) {
+    if (!id.valid() || room.seen.id != id) broken("room " + id.str() + " is filed under another id");
+    if (!room.center_map.allFinite()) broken("room " + id.str() + " is not finite");
+    if (!graph.floors.contains(room.seen.floor))
+      broken("room " + id.str() + " is on " + room.seen.floor.str() + ", which does not exist");
+    for (const PlaneId wall : room.seen.walls())
+      if (!graph.planes.contains(wall))
+        broken("room " + id.str() + " has wall " + wall.str() + ", which does not exist");
+  }
+  for (const auto& [id, doorway] : graph.doorways) {
+    if (!id.valid() || doorway.id != id) broken("doorway " + id.str() + " is filed under another id");
+    for (const RoomId room : {doorway.a, doorway.b})
+      if (room.valid() && !graph.rooms.contains(room))
+        broken("doorway " + id.str() + " leads to " + room.str() + ", which does not exist");
+  }
   if (!(std::abs(graph.up_map.norm() - 1.0) < 1e-6)) broken("up is not a unit vector");
 }
 
@@ -175,35 +71,42 @@ void checkPlaneFactors(const SituationalGraph& graph) {
   }
 }
 
+void checkRoomFactors(const SituationalGraph& graph) {
+  const auto need = [](bool there, int64_t factor, const char* what) {
+    if (!there) broken("factor " + std::to_string(factor) + " names a " + what + " that does not exist");
+  };
+  const auto needCenter = [&](const CenterOf& of, int64_t factor) {
+    need(of.room.valid() != of.floor.valid(), factor, "centre");
+    need(!of.room.valid() || graph.rooms.contains(of.room), factor, "room");
+    need(!of.floor.valid() || graph.floors.contains(of.floor), factor, "floor");
+  };
+  for (const CenterWallsFactor& f : graph.center_walls) {
+    needCenter(f.of, f.id);
+    need(f.a != f.b && graph.planes.contains(f.a) && graph.planes.contains(f.b), f.id, "pair of planes");
+  }
+  for (const CenterAnchorFactor& f : graph.center_anchors) {
+    needCenter(f.of, f.id);
+    need(graph.keyframes.contains(f.keyframe), f.id, "keyframe");
+  }
+  for (const RoomShapeFactor& f : graph.room_shapes) {
+    need(graph.rooms.contains(f.room), f.id, "room");
+    need(f.a != f.b && graph.planes.contains(f.a) && graph.planes.contains(f.b), f.id, "pair of planes");
+  }
+  for (const FloorHeightFactor& f : graph.floor_heights) {
+    need(graph.floors.contains(f.floor), f.id, "floor");
+    need(graph.planes.contains(f.plane), f.id, "plane");
+  }
+  for (const FloorRoomFactor& f : graph.floor_rooms) {
+    need(graph.floors.contains(f.floor), f.id, "floor");
+    need(graph.rooms.contains(f.room), f.id, "room");
+  }
+}
+
 }  // namespace
 
 const char* toString(PlaneLabel label) {
   if (label == PlaneLabel::kX) return "x";
   return label == PlaneLabel::kY ? "y" : "horizontal";
-}
-
-std::string SituationalGraph::digest() const {
-  CanonicalBytes bytes;
-  bytes.add(static_cast<int64_t>(keyframes.size()));
-  for (const auto& [id, node] : keyframes) {
-    bytes.add(id.value);
-    bytes.add(node.time.us);
-    bytes.add(node.T_map_body);
-    bytes.add(node.T_odom_body);
-    bytes.add(node.floor.value);
-  }
-  addPlanes(*this, bytes);
-  bytes.add(static_cast<int64_t>(floors.size()));
-  for (const auto& [id, floor] : floors) {
-    bytes.add(id.value);
-    bytes.add(floor.center_map);
-    bytes.add(static_cast<int64_t>(floor.has_height));
-    bytes.add(floor.z_m);
-  }
-  bytes.add(up_map);
-  bytes.add(static_cast<int64_t>(relative_poses.size()));
-  addFactors(*this, bytes);
-  return bytes.hex();
 }
 
 void SituationalGraph::check() const {
@@ -224,6 +127,7 @@ void SituationalGraph::check() const {
       broken("factor " + std::to_string(factor.id) + " is not finite");
   }
   checkPlaneFactors(*this);
+  checkRoomFactors(*this);
 }
 
 }  // namespace sgraphs

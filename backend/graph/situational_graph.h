@@ -109,6 +109,60 @@ struct SameHeightFactor {
   double sigma_m = 0;
 };
 
+// Whose centre: of a room or of a storey; the other is invalid.
+struct CenterOf {
+  RoomId room;
+  FloorId floor;
+
+  bool operator==(const CenterOf&) const = default;
+};
+
+// A centre halfway between two walls, as high as they were seen.
+struct CenterWallsFactor {
+  int64_t id = 0;
+  CenterOf of;
+  PlaneId a, b;
+  bool finite = false;  // one of two pairs of a finite room
+  double height_m = 0;
+  double sigma_m = 0;
+};
+
+// A centre's place along a direction that its walls leave open, as a keyframe has it.
+struct CenterAnchorFactor {
+  int64_t id = 0;
+  CenterOf of;
+  KeyframeId keyframe;
+  Eigen::Vector3d center_body = Eigen::Vector3d::Zero();
+  Eigen::Vector3d along_body = Eigen::Vector3d::UnitX();
+  double sigma_m = 0;
+};
+
+// Two walls of a room, parallel or at right angles.
+struct RoomShapeFactor {
+  int64_t id = 0;
+  RoomId room;
+  PlaneId a, b;
+  bool square = false;
+  double sigma_rad = 0;
+};
+
+// The height of a storey by a level plane.
+struct FloorHeightFactor {
+  int64_t id = 0;
+  FloorId floor;
+  PlaneId plane;
+  double sigma_m = 0;
+};
+
+// A room of a storey.
+struct FloorRoomFactor {
+  int64_t id = 0;
+  FloorId floor;
+  RoomId room;
+  Eigen::Vector2d offset_map = Eigen::Vector2d::Zero();  // of the room's centre from the storey's
+  double sigma_m = 0;
+};
+
 // The layers and what binds them: plain data in ordered containers. Only the backend changes it.
 struct SituationalGraph {
   std::map<KeyframeId, KeyframeNode> keyframes;
@@ -126,8 +180,14 @@ struct SituationalGraph {
   std::vector<PlaneUpFactor> plane_ups;
   std::vector<FacesFactor> faces;
   std::vector<SameHeightFactor> same_heights;
+  std::vector<CenterWallsFactor> center_walls;
+  std::vector<CenterAnchorFactor> center_anchors;
+  std::vector<RoomShapeFactor> room_shapes;
+  std::vector<FloorHeightFactor> floor_heights;
+  std::vector<FloorRoomFactor> floor_rooms;
 
   // SHA-256 of the canonical snapshot: nodes by layer and id, factors by kind and ids, doubles as IEEE bits.
+  // The free space is no part of it: it is derived.
   std::string digest() const;
 
   // Throws std::logic_error if a factor names a node that does not exist or a pose is not finite.

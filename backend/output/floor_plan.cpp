@@ -106,6 +106,8 @@ FloorPlan makeFloorPlan(const SituationalGraph& graph, const FloorNode& floor, s
   FloorPlan plan;
   plan.floor = floor.id;
   plan.walls = wallLines(graph, floor);
+  plan.rooms = planRooms(graph, floor.id);
+  plan.doors = planDoors(graph, floor.id);
   plan.path = pathOn(graph, floor.id, scans);
   if (!scans.empty()) plan.duration_s = (scans.back().time - scans.front().time).seconds();
   const auto slice = slicePoints(map, floor.id, StoreyHeight(graph, floor));

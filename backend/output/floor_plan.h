@@ -31,6 +31,22 @@ struct FloorPlan {
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
   };
   std::vector<WallLine> walls;
+  struct Room {
+    RoomId id;
+    std::vector<Eigen::Vector2d> polygon;
+    Eigen::Vector2d label_at = Eigen::Vector2d::Zero();  // far from every wall
+    double room_for_label_m = 0;                         // free around it
+    double area_m2 = 0;
+    bool corridor = false;
+  };
+  std::vector<Room> rooms;
+  // Seen from above, jamb to jamb.
+  struct Door {
+    Eigen::Vector2d left = Eigen::Vector2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    double width_m = 0;
+  };
+  std::vector<Door> doors;
   double duration_s = 0;  // of the whole run: the colour scale's end
   Paper extent;           // of ink and path
 };
@@ -40,6 +56,10 @@ FloorPlan makeFloorPlan(const SituationalGraph& graph, const FloorNode& floor, s
 
 // Faces of the storey's walls where their extent reaches into the slice, by id; a doorway leaves a gap.
 std::vector<FloorPlan::WallLine> wallLines(const SituationalGraph& graph, const FloorNode& floor);
+
+// Rooms and doorways of the storey, by id.
+std::vector<FloorPlan::Room> planRooms(const SituationalGraph& graph, FloorId floor);
+std::vector<FloorPlan::Door> planDoors(const SituationalGraph& graph, FloorId floor);
 
 std::string floorPlanPng(const FloorPlan& plan);
 std::string floorPlanSvg(const FloorPlan& plan);

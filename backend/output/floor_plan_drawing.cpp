@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <set>
 
 #include "backend/output/floor_plan.h"
@@ -15,6 +16,11 @@ constexpr Color kStart{22, 150, 75};
 constexpr Color kEnd{208, 38, 48};
 constexpr Color kWhite{255, 255, 255};
 constexpr Color kWall{24, 28, 34};
+// Soft tints in turn, so that neighbours differ; corridors are grey.
+constexpr Color kRoomTints[] = {{225, 238, 250}, {250, 236, 220}, {228, 245, 226},
+                                {246, 228, 238}, {250, 247, 215}, {232, 230, 248}};
+constexpr Color kCorridorTint{236, 236, 236};
+constexpr Color kDoor{200, 110, 30};
 // Thin enough that the two faces of a 5 cm wall, or a wall mapped twice, are two lines.
 constexpr double kWallPen_m = 0.035;
 constexpr double kWallTick_m = 0.07;
@@ -51,9 +57,12 @@ class Drawing {
 
   void draw(Canvas& canvas) const {
     drawGrid(canvas);
+    drawRooms(canvas);
     if (!plan_.ink.indices.empty()) canvas.raster(plan_.ink);
     drawPath(canvas);
     drawWalls(canvas);
+    drawDoors(canvas);
+    drawNames(canvas);
     drawTitle(canvas);
     drawScaleBar(canvas);
     drawLegend(canvas);
@@ -129,6 +138,36 @@ class Drawing {
     }
   }
 
+  void drawRooms(Canvas& canvas) const {
+    for (const FloorPlan::Room& room : plan_.rooms)
+      canvas.polygon(room.polygon,
+                     room.corridor ? kCorridorTint : kRoomTints[room.id.value % std::size(kRoomTints)]);
+  }
+
+  void drawDoors(Canvas& canvas) const {
+    for (const FloorPlan::Door& door : plan_.doors) {
+      const Eigen::Vector2d along = (door.right - door.left).normalized();
+      const Eigen::Vector2d tick = 0.12 * Eigen::Vector2d(-along.y(), along.x());
+      canvas.line(door.left, door.right, kDoor, kWallPen_m);
+      canvas.line(door.left - tick, door.left + tick, kDoor, kWallPen_m);
+      canvas.line(door.right - tick, door.right + tick, kDoor, kWallPen_m);
+      canvas.text(0.5 * (door.left + door.right) + tick + Eigen::Vector2d(0, 0.05),
+                  format("%.2f", door.width_m), 0.7 * letter_, kDoor, TextAnchor::kCenter);
+    }
+  }
+
+  // Name and area, small enough for the room.
+  void drawNames(Canvas& canvas) const {
+    for (const FloorPlan::Room& room : plan_.rooms) {
+      const double size = std::clamp(0.35 * room.room_for_label_m, 0.5 * letter_, 1.2 * letter_);
+      const Eigen::Vector2d up(0, 0.35 * size);
+      canvas.text(room.label_at + up, (room.corridor ? "Corridor " : "Room ") + room.id.str(), size, kText,
+                  TextAnchor::kCenter);
+      canvas.text(room.label_at - 1.4 * size * Eigen::Vector2d(0, 1) + up, format("%.1f m2", room.area_m2),
+                  0.8 * size, kText, TextAnchor::kCenter);
+    }
+  }
+
   void drawMark(Canvas& canvas, const Eigen::Vector2d& at, Color color) const {
     canvas.disc(at, 0.85 * letter_, kWhite);
     canvas.disc(at, 0.6 * letter_, color);
@@ -152,7 +191,9 @@ class Drawing {
     canvas.text({extent_.min.x(), extent_.max.y() + 1.4 * letter_}, "Floor " + plan_.floor.str(),
                 1.5 * letter_, kText, TextAnchor::kLeft);
     canvas.text({extent_.max.x(), extent_.max.y() + 1.4 * letter_},
-                (plan_.walls.empty() ? std::string() : format("%.0f wall faces,  ", countWalls())) +
+                (plan_.rooms.empty() ? std::string()
+                                     : format("%.0f rooms,  ", static_cast<double>(plan_.rooms.size()))) +
+                    (plan_.walls.empty() ? std::string() : format("%.0f wall faces,  ", countWalls())) +
                     format("path %.1f m", pathLength()) + format(",  %.0f s", plan_.duration_s),
                 letter_, kText, TextAnchor::kRight);
   }

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "backend/output/graph_files.h"
+#include "backend/output/graph_layers_json.h"
 #include "backend/output/map_cloud.h"
 #include "common/geometry/tangent_basis.h"
 
@@ -103,7 +104,9 @@ std::string graphJson(const SituationalGraph& graph, const std::map<FloorId, Flo
                      {"layer", "floors"},
                      {"center", {floor.center_map.x(), floor.center_map.y()}},
                      {"z", floor.has_height ? Json(floor.z_m) : Json(nullptr)}});
+  addUpperLayerNodes(graph, nodes);
   json["links"] = linksJson(graph);
+  addUpperLayerLinks(graph, json["links"]);
   // One node or link per line: small enough to read, and to compare with diff.
   std::string text = "{\n";
   for (auto item = json.begin(); item != json.end(); ++item) {

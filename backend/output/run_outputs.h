@@ -40,7 +40,7 @@ struct RunRecord {
   std::map<std::string, int64_t> gaps;  // messages lost per channel
 };
 
-// Writes every file of OUT (contract.md) that the keyframe layer can fill: trajectory.tum, keyframes.tum,
+// Writes every file of OUT (contract.md): trajectory.tum, keyframes.tum,
 // odometry.tum, map.ply, graph.json, graph.g2o, floorplan_f*.svg and .png, occupancy_f*.pgm and .yaml,
 // summary.json. Creates the folder. The same graph and scans give the same bytes, summary.json's wall times
 // excepted. Throws Error naming the file that cannot be written; a run without a keyframe writes what there

@@ -68,28 +68,35 @@ void PlaneLayer::advance(const RelativePose& z) {
   }
   for (Unmapped& unmapped : unmapped_) {
     age(unmapped.track);
-    unmapped.plane =
-        planeFrom(unmapped.z, graph.keyframes.at(unmapped.keyframe).T_map_body, unmapped.plane.floor);
+    const KeyframeNode& seen_from = graph.keyframes.at(unmapped.keyframe);
+    unmapped.plane = planeFrom(unmapped.z, seen_from.T_map_body, seen_from.floor);
     reframe(unmapped.track, unmapped.plane.normal_map);
   }
 }
 
-// Mapped planes by id, then those seen once.
-std::vector<PlaneCandidate> PlaneLayer::candidates() const {
-  std::vector<PlaneCandidate> candidates;
-  for (const auto& [id, track] : tracks_)
-    candidates.push_back({&builder_.graph().planes.at(id), track.covariance, track.drift});
-  for (const Unmapped& unmapped : unmapped_)
-    candidates.push_back({&unmapped.plane, unmapped.track.covariance, unmapped.track.drift});
-  return candidates;
+PlaneLayer::Known PlaneLayer::candidates(FloorId floor) const {
+  Known known;
+  size_t index = 0;
+  const auto add = [&](const PlaneNode& plane, const Track& track) {
+    const bool apart = plane.floor.valid() && floor.valid() && plane.floor != floor;
+    if (!apart) {
+      known.planes.push_back({&plane, track.covariance, track.drift});
+      known.index.push_back(index);
+    }
+    ++index;
+  };
+  for (const auto& [id, track] : tracks_) add(builder_.graph().planes.at(id), track);
+  for (const Unmapped& unmapped : unmapped_) add(unmapped.plane, unmapped.track);
+  return known;
 }
 
 PlaneLayer::Sighting PlaneLayer::associate(KeyframeId keyframe, const KeyframePlanes& planes) const {
-  const SE3& T_map_body = builder_.graph().keyframes.at(keyframe).T_map_body;
-  const std::vector<PlaneCandidate> known = candidates();
+  const KeyframeNode& node = builder_.graph().keyframes.at(keyframe);
+  const SE3& T_map_body = node.T_map_body;
+  const Known known = candidates(node.floor);
   Sighting sighting;
   sighting.observations = planes.planes;
-  sighting.candidate = associatePlanes(planes.planes, T_map_body, known, config_.gate);
+  sighting.candidate = associatePlanes(planes.planes, T_map_body, known.planes, config_.gate);
   keepSharedError(planes.pose_sigma, sighting.observations);
   for (size_t i = 0; i < sighting.observations.size(); ++i) {
     if (canBeWeighed(sighting.observations[i])) continue;
@@ -100,9 +107,12 @@ PlaneLayer::Sighting PlaneLayer::associate(KeyframeId keyframe, const KeyframePl
   }
   sighting.information.setZero();
   for (size_t i = 0; i < sighting.observations.size(); ++i) {
-    const auto& candidate = sighting.candidate[i];
-    if (!candidate || *candidate >= tracks_.size()) continue;
-    const PlaneResidual r = planeResidual(sighting.observations[i], T_map_body, *known[*candidate].plane);
+    auto& candidate = sighting.candidate[i];
+    if (!candidate) continue;
+    const PlaneNode& plane = *known.planes[*candidate].plane;
+    candidate = known.index[*candidate];
+    if (*candidate >= tracks_.size()) continue;
+    const PlaneResidual r = planeResidual(sighting.observations[i], T_map_body, plane);
     sighting.information += r.by_pose.transpose() * sighting.observations[i].covariance.inverse() * r.by_pose;
   }
   return sighting;
@@ -153,8 +163,9 @@ bool PlaneLayer::add(KeyframeId keyframe, const Sighting& sighting) {
 }
 
 void PlaneLayer::map(const Unmapped& unmapped) {
-  const SE3& T_map_body = builder_.graph().keyframes.at(unmapped.keyframe).T_map_body;
-  PlaneNode plane = planeFrom(unmapped.z, T_map_body, unmapped.plane.floor);
+  const KeyframeNode& node = builder_.graph().keyframes.at(unmapped.keyframe);
+  const SE3& T_map_body = node.T_map_body;
+  PlaneNode plane = planeFrom(unmapped.z, T_map_body, node.floor);
   plane.label = axes_.label(plane.normal_map, builder_.graph().up_map);
   plane.covariance = alongNormal(
       movedCovariance(observedPlaneCovariance(unmapped.z, T_map_body,
@@ -249,25 +260,29 @@ void PlaneLayer::mergeTwins() {
       it = twins_.erase(it);
       continue;
     }
-    // The one seen last is known relative to the newest keyframe.
-    std::optional<Track> newer;
-    if (tracks_.at(from).last_seen > tracks_.at(into).last_seen) {
-      newer = tracks_.at(from);
-      const PlaneNode &gone = planes.at(from), &kept = planes.at(into);
-      newer->covariance = reframedCovariance(
-          movedCovariance(reframedCovariance(newer->covariance, newer->normal_map, gone.normal_map),
-                          gone.normal_map, gone.anchor_map, kept.anchor_map),
-          gone.normal_map, kept.normal_map);
-      newer->normal_map = kept.normal_map;
-    }
-    builder_.mergePlanes(from, into);
-    if (newer) tracks_.at(into) = *newer;
-    tracks_.erase(from);
-    announced_.erase(from);
-    merged_away_.insert(from);
-    std::erase(seen_, from);
+    merge(from, into);
     it = twins_.erase(it);
   }
+}
+
+void PlaneLayer::merge(PlaneId from, PlaneId into) {
+  // The one seen last is known relative to the newest keyframe.
+  std::optional<Track> newer;
+  if (tracks_.at(from).last_seen > tracks_.at(into).last_seen) {
+    newer = tracks_.at(from);
+    const PlaneNode &gone = builder_.graph().planes.at(from), &kept = builder_.graph().planes.at(into);
+    newer->covariance = reframedCovariance(
+        movedCovariance(reframedCovariance(newer->covariance, newer->normal_map, gone.normal_map),
+                        gone.normal_map, gone.anchor_map, kept.anchor_map),
+        gone.normal_map, kept.normal_map);
+    newer->normal_map = kept.normal_map;
+  }
+  builder_.mergePlanes(from, into);
+  if (newer) tracks_.at(into) = *newer;
+  tracks_.erase(from);
+  announced_.erase(from);
+  merged_away_.insert(from);
+  std::erase(seen_, from);
 }
 
 template <typename Factor>
@@ -335,9 +350,9 @@ std::vector<PlaneId> PlaneLayer::takeChanged() {
     Announced& known = announced_[id];
     const bool still = (known.normal - plane.normal_map).norm() < kAnnounceStep_rad &&
                        std::abs(known.d - plane.d()) < kAnnounceStep_m &&
-                       known.num_observations == plane.num_observations;
+                       known.num_observations == plane.num_observations && known.floor == plane.floor;
     if (still) continue;
-    known = {plane.normal_map, plane.d(), plane.num_observations};
+    known = {plane.normal_map, plane.d(), plane.num_observations, plane.floor};
     changed.push_back(id);
   }
   std::sort(changed.begin(), changed.end());

@@ -40,6 +40,9 @@ class PlaneLayer {
   // brought up to date. Where the whole graph was solved all extents are made anew.
   void settle(bool whole, bool idle);
 
+  // Proof from elsewhere (a room) that the two are one: `into` lives on.
+  void merge(PlaneId from, PlaneId into);
+
   // Covariances as the whole graph has them now.
   void refreshCovariances();
 
@@ -67,9 +70,15 @@ class PlaneLayer {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double d = 0;
     int64_t num_observations = 0;
+    FloorId floor;
   };
 
-  std::vector<PlaneCandidate> candidates() const;
+  // Mapped planes by id, then those seen once; of two, which storey they are on must not speak against it.
+  struct Known {
+    std::vector<PlaneCandidate> planes;
+    std::vector<size_t> index;  // among all mapped planes, then those seen once
+  };
+  Known candidates(FloorId floor) const;
   void map(const Unmapped& unmapped);
   void observe(KeyframeId keyframe, PlaneId plane, const PlaneObservation& z, Track& track);
   void addUprights();

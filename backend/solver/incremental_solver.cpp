@@ -10,6 +10,14 @@ class IncrementalSolver::Impl : public RoundSolver {
  public:
   using RoundSolver::RoundSolver;
 
+  // A changed factor of what follows others moves nothing but that.
+  void markFactor(const std::vector<StateId>& states) {
+    std::vector<StateId> marked;
+    for (const StateId state : states)
+      if (follows(graph.states[static_cast<size_t>(state)].kind)) marked.push_back(state);
+    markChanged(marked.empty() ? states : marked);
+  }
+
   template <typename Covariance>
   std::map<StateId, Covariance> covariancesOf(StateKind kind) {
     std::map<StateId, Covariance> out;
@@ -44,6 +52,20 @@ IncrementalSolver::StateId IncrementalSolver::addSharedUnitVector(const Eigen::V
   return id;
 }
 
+IncrementalSolver::StateId IncrementalSolver::addCenter(const Eigen::Vector2d& center) {
+  const StateId id = impl_->graph.addState(StateKind::kCenter);
+  std::copy_n(center.data(), 2, impl_->graph.states.back().x.begin());
+  impl_->forgetMarginals();
+  return id;
+}
+
+IncrementalSolver::StateId IncrementalSolver::addHeight(double height_m) {
+  const StateId id = impl_->graph.addState(StateKind::kHeight);
+  impl_->graph.states.back().x[0] = height_m;
+  impl_->forgetMarginals();
+  return id;
+}
+
 void IncrementalSolver::hold(StateId state) {
   impl_->graph.states.at(static_cast<size_t>(state)).held = true;
 }
@@ -56,14 +78,14 @@ IncrementalSolver::FactorId IncrementalSolver::addFactor(std::unique_ptr<ceres::
   if (cauchy_scale) factor.loss = std::make_unique<ceres::CauchyLoss>(*cauchy_scale);
   factor.states = states;
   const FactorId id = impl_->graph.addFactor(std::move(factor));
-  impl_->markChanged(states);
+  impl_->markFactor(states);
   return id;
 }
 
 void IncrementalSolver::setEnabled(FactorId factor, bool enabled) {
   if (this->enabled(factor) == enabled) return;
   impl_->graph.setEnabled(factor, enabled);
-  impl_->markChanged(impl_->graph.factors[static_cast<size_t>(factor)].states);
+  impl_->markFactor(impl_->graph.factors[static_cast<size_t>(factor)].states);
 }
 
 bool IncrementalSolver::enabled(FactorId factor) const {
@@ -73,8 +95,9 @@ bool IncrementalSolver::enabled(FactorId factor) const {
 void IncrementalSolver::rebind(FactorId factor, StateId from, StateId to) {
   impl_->graph.rebind(factor, from, to);
   if (!enabled(factor)) return;
-  impl_->markChanged(impl_->graph.factors[static_cast<size_t>(factor)].states);
-  impl_->markChanged({from});
+  std::vector<StateId> states = impl_->graph.factors[static_cast<size_t>(factor)].states;
+  states.push_back(from);
+  impl_->markFactor(states);
 }
 
 SE3 IncrementalSolver::pose(StateId state) const {
@@ -102,6 +125,14 @@ Eigen::Vector3d IncrementalSolver::unitVector(StateId state) const {
 void IncrementalSolver::setUnitVector(StateId state, const Eigen::Vector3d& n) {
   impl_->forgetWhole();
   std::copy_n(n.data(), 3, impl_->graph.states.at(static_cast<size_t>(state)).x.begin());
+}
+
+Eigen::Vector2d IncrementalSolver::center(StateId state) const {
+  return Eigen::Vector2d(impl_->graph.states.at(static_cast<size_t>(state)).x.data());
+}
+
+double IncrementalSolver::height(StateId state) const {
+  return impl_->graph.states.at(static_cast<size_t>(state)).x[0];
 }
 
 IncrementalSolver::Report IncrementalSolver::solve(bool whole) {

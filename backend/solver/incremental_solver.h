@@ -70,6 +70,11 @@ class IncrementalSolver {
   StateId addPlane(const PlaneState& plane);
   // A direction shared by many factors: no path for neighbourhoods, and moved only with the whole graph.
   StateId addSharedUnitVector(const Eigen::Vector3d& n);
+  // What the factors between other states do not depend on: the centre (x, y) of a room or a storey, the
+  // height of a storey [m]. Factors of these are to determine them and nothing else: a change of such a
+  // factor calls for a solve of the centres and heights in it only.
+  StateId addCenter(const Eigen::Vector2d& center);
+  StateId addHeight(double height_m);
   // Held states never move: the gauge.
   void hold(StateId state);
 
@@ -91,6 +96,9 @@ class IncrementalSolver {
   void setPlane(StateId state, const PlaneState& plane);
   Eigen::Vector3d unitVector(StateId state) const;
   void setUnitVector(StateId state, const Eigen::Vector3d& n);
+
+  Eigen::Vector2d center(StateId state) const;
+  double height(StateId state) const;
 
   // Solves the neighbourhood of the factors added since the last call, or the whole graph where `whole` asks
   // for it, a former whole-graph solve ran out of iterations, or too much was left unresolved.

@@ -8,11 +8,12 @@ void Region::grow(const std::vector<int>& seeds, int hops) {
   std::vector<int> ring = keepFree(seeds), poses;
   for (int hop = 0; hop <= hops && !ring.empty(); ++hop) {
     add(ring);
-    std::erase_if(ring, [&](int state) { return isPlane(state); });
+    std::erase_if(ring, [&](int state) { return isPlane(state) || isFollower(state); });
     poses.insert(poses.end(), ring.begin(), ring.end());
     ring = keepFree(neighbours(ring, false));
   }
   add(keepFree(neighbours(poses, true)));
+  add(keepFree(followers(members_)));
   std::sort(members_.begin(), members_.end());
 }
 
@@ -35,7 +36,17 @@ std::vector<int> Region::neighbours(const std::vector<int>& of, bool across) con
   for (const int state : of)
     for (const int factor : graph_.states[static_cast<size_t>(state)].factors)
       for (const int other : graph_.factors[static_cast<size_t>(factor)].states)
-        if ((isPlane(state) != isPlane(other)) == across) found.push_back(other);
+        if (!isFollower(state) && !isFollower(other) && (isPlane(state) != isPlane(other)) == across)
+          found.push_back(other);
+  return found;
+}
+
+std::vector<int> Region::followers(const std::vector<int>& of) const {
+  std::vector<int> found;
+  for (const int state : of)
+    for (const int factor : graph_.states[static_cast<size_t>(state)].factors)
+      for (const int other : graph_.factors[static_cast<size_t>(factor)].states)
+        if (!isFollower(state) && isFollower(other)) found.push_back(other);
   return found;
 }
 

@@ -183,6 +183,8 @@ void RoundSolver::pullAtObservers(int plane, const Region& region) {
 StepSize RoundSolver::largest(const std::vector<Marginals::StateVector>& steps) const {
   StepSize most;
   for (const auto& [state, step] : steps) {
+    // What follows is where its walls say, whatever the lever to them.
+    if (follows(graph.states[static_cast<size_t>(state)].kind)) continue;
     const StepSize size = graph.sizeOf(state, step);
     most = {std::max(most.m, size.m), std::max(most.rad, size.rad)};
   }

@@ -73,7 +73,9 @@ void StateGraph::rebind(int factor, int from, int to) {
 const ceres::Manifold& StateGraph::manifold(StateKind kind) const {
   if (kind == StateKind::kPose) return pose_manifold_;
   if (kind == StateKind::kPlane) return plane_manifold_;
-  return unit_vector_manifold_;
+  if (kind == StateKind::kUnitVector) return unit_vector_manifold_;
+  if (kind == StateKind::kCenter) return center_manifold_;
+  return height_manifold_;
 }
 
 ceres::Manifold* StateGraph::manifold(StateKind kind) {
@@ -161,6 +163,7 @@ StepSize StateGraph::sizeOf(int state, const Eigen::VectorXd& step) const {
     return {step.head<3>().norm(), step.tail<3>().norm()};
   if (states[static_cast<size_t>(state)].kind == StateKind::kPlane)
     return {std::abs(step(2)), step.head<2>().norm()};
+  if (follows(states[static_cast<size_t>(state)].kind)) return {step.norm(), 0.0};
   return {0.0, step.norm()};
 }
 

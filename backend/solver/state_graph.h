@@ -15,7 +15,13 @@
 
 namespace sgraphs {
 
-enum class StateKind { kPose, kPlane, kUnitVector };
+enum class StateKind { kPose, kPlane, kUnitVector, kCenter, kHeight };
+
+// Centres (x, y) and heights [m] follow what they are bound to: they are bound to no more than determines
+// them, so they pull at nothing as long as they are free wherever one of those is.
+inline bool follows(StateKind kind) {
+  return kind == StateKind::kCenter || kind == StateKind::kHeight;
+}
 
 // Ceres keeps pointers to x, so states never move in memory.
 struct State {
@@ -95,6 +101,8 @@ class StateGraph {
   PoseManifold pose_manifold_;
   PlaneManifold plane_manifold_;
   UnitVectorManifold unit_vector_manifold_;
+  ceres::EuclideanManifold<2> center_manifold_;
+  ceres::EuclideanManifold<1> height_manifold_;
 };
 
 }  // namespace sgraphs

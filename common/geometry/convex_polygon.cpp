@@ -7,7 +7,7 @@
 namespace sgraphs {
 namespace {
 
-bool contains(const Polygon2d& polygon, const Eigen::Vector2d& p) {
+bool convexContains(const Polygon2d& polygon, const Eigen::Vector2d& p) {
   for (size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d& a = polygon[i];
     if (cross(polygon[(i + 1) % polygon.size()] - a, p - a) < 0) return false;
@@ -25,6 +25,17 @@ bool segmentsCross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+bool contains(const Polygon2d& polygon, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Eigen::Vector2d &a = polygon[i], &b = polygon[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
 }
 
 double distanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -87,7 +98,7 @@ double overlapArea(const Polygon2d& a, const Polygon2d& b) {
 
 double gapBetween(const Polygon2d& a, const Polygon2d& b) {
   if (a.empty() || b.empty()) return std::numeric_limits<double>::infinity();
-  if ((a.size() > 2 && contains(a, b.front())) || (b.size() > 2 && contains(b, a.front()))) return 0;
+  if ((a.size() > 2 && convexContains(a, b.front())) || (b.size() > 2 && convexContains(b, a.front()))) return 0;
   double gap = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < a.size(); ++i)
     for (size_t k = 0; k < b.size(); ++k) {

@@ -9,6 +9,8 @@ namespace sgraphs {
 using Polygon2d = std::vector<Eigen::Vector2d>;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+// By the crossings of a ray: for any simple polygon, in either direction, not closed.
+bool contains(const Polygon2d& polygon, const Eigen::Vector2d& p);
 double distanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 
 // Convex hull; empty if the points lie on a line.

@@ -6,14 +6,9 @@
 #include <vector>
 
 #include "common/base/performance.h"
-#include "common/bus/bus.h"
-#include "common/bus/channels.h"
-#include "common/bus/early_messages.h"
-#include "common/bus/input_gate.h"
-#include "common/bus/publisher.h"
 #include "common/types/plane.h"
-#include "common/types/session.h"
 #include "lcmtypes/convert/keyframe_assembly.h"
+#include "perception/stage/stage_io.h"
 
 namespace sgraphs {
 
@@ -41,13 +36,10 @@ class PlanesNode {
   // Why this run is not reproducible; empty if it is. Known once done.
   std::string whyNot() const { return end_ ? end_->why_not : ""; }
 
-  const InputGate& gate() const { return gate_; }
+  const InputGate& gate() const { return io_.gate(); }
   const LatencyHistogram& stepLatency() const { return latency_; }
 
  private:
-  template <typename Message>
-  void listen(const Channel<Message>& channel, void (PlanesNode::*handler)(const Message&));
-  void onSession(const session_t& m);
   void onKeyframe(const keyframe_t& m);
   void onStreamEnd(const stream_end_t& m);
   void onOdometryEnd(const stream_end_t& m);
@@ -55,14 +47,10 @@ class PlanesNode {
   void segment(int64_t keyframe);
 
   Bus& bus_;
-  Publisher publisher_;
+  StageIo io_;
   Step step_;
-  InputGate gate_;
   KeyframeAssembly assembly_;
 
-  std::optional<Session> session_;
-  bool takes_part_ = false;
-  EarlyMessages early_;
   int64_t next_ = 0;        // keyframe
   int64_t announced_ = -1;  // newest keyframe heard of
   Time newest_time_;

@@ -67,9 +67,10 @@ TEST_P(BackendBatchTest, RoundsEndAtTheBatchOptimum) {
 TEST_P(BackendBatchTest, EveryFactorReachesTheSolverAtItsWeight) {
   const Walk walk = makeWalk(GetParam().walk);
   Backend backend{BackendConfig{}};
-  std::map<std::string, int64_t> expected{{"odometry", 0}, {"neighbour", 0},  {"loop", 0},
-                                          {"up", 0},       {"observes", 0},   {"plane_up", 0},
-                                          {"faces", 0},    {"same_height", 0}};
+  std::map<std::string, int64_t> expected{
+      {"odometry", 0},   {"neighbour", 0},  {"loop", 0},         {"up", 0},        {"observes", 0},
+      {"plane_up", 0},   {"faces", 0},      {"same_height", 0},  {"room_wall", 0}, {"room_wall_infinite", 0},
+      {"room_shape", 0}, {"floor_wall", 0}, {"floor_height", 0}, {"floor_room", 0}};
   int64_t round = 0;
   for (const Keyframe& keyframe : walk.keyframes) {
     for (const RelativePose& z : keyframe.relative_poses)

@@ -97,7 +97,7 @@ TEST(GraphMessagesTest, APlaneThatIsNowhereIsAnError) {
 TEST(GraphMessagesTest, ASnapshotHoldsEveryNodeOnceInDatagrams) {
   SituationalGraph graph = largeGraph(400, 48);
   graph.merged_planes = {{{50}, {1}}};
-  const auto messages = test::throughBytes(snapshotMessages(graph, outputOf({}), 9, kTime, false));
+  const auto messages = test::throughBytes(snapshotMessages(graph, outputOf({}), 9, kTime));
   ASSERT_GT(messages.size(), 4u);
   std::vector<int64_t> keyframes, planes;
   int floors = 0;

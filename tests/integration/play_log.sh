@@ -1,8 +1,8 @@
 #!/bin/sh
 # Plays a log into the real processes, in a network namespace of its own where the machine allows one.
 #   play_log.sh BIN LOG OUT SPEED        BIN: folder of the programs; OUT: folder for what they write and say
-# Leaves OUT/backend.txt, planes.txt, odometry.txt (stdout and stderr) and OUT/codes ("<odometry> <planes>
-# <backend>"). Fails with 99 if a process hangs, 98 if the machine has no multicast.
+# Leaves OUT/<process>.txt (stdout and stderr) and OUT/codes ("<backend> <free-space> <rooms> <planes>
+# <odometry>"). Fails with 99 if a process hangs, 98 if the machine has no multicast.
 set -u
 BIN=$1 LOG=$2 OUT=$3 SPEED=$4
 
@@ -21,20 +21,25 @@ URL="udpm://239.255.76.68:$PORT?ttl=0&recv_buf_size=212992"
 RAW='SESSION|VELODYNE_PACKETS|LIDAR_POINTS|SPOT_ODOMETRY|ROUND_SCHEDULE|STREAM_END'
 
 mkdir -p "$OUT"
+STAGES='free-space rooms planes odometry'
 "$BIN/sgraphs-backend" --lcm-url "$URL" -o "$OUT/result" >"$OUT/backend.txt" 2>&1 &
-BACKEND=$!
-"$BIN/sgraphs-planes" --lcm-url "$URL" >"$OUT/planes.txt" 2>&1 &
-PLANES=$!
-"$BIN/sgraphs-odometry" --lcm-url "$URL" >"$OUT/odometry.txt" 2>&1 &
-ODOMETRY=$!
-trap 'kill -9 $BACKEND $PLANES $ODOMETRY 2>/dev/null' EXIT
+pids=$!
+for stage in $STAGES; do
+  "$BIN/sgraphs-$stage" --lcm-url "$URL" >"$OUT/$stage.txt" 2>&1 &
+  pids="$pids $!"
+done
+trap 'kill -9 $pids 2>/dev/null' EXIT
 
+all_listen() {
+  for process in backend $STAGES; do
+    grep -q 'listening' "$OUT/$process.txt" || return 1
+  done
+}
 tries=0
-until grep -q 'listening' "$OUT/backend.txt" && grep -q 'listening' "$OUT/planes.txt" &&
-  grep -q 'listening' "$OUT/odometry.txt"; do
+until all_listen; do
   tries=$((tries + 1))
   if [ $tries -gt 300 ]; then
-    cat "$OUT/backend.txt" "$OUT/planes.txt" "$OUT/odometry.txt"
+    cat "$OUT"/*.txt
     exit 98
   fi
   sleep 0.1
@@ -43,14 +48,16 @@ done
 lcm-logplayer -s "$SPEED" -e "$RAW" -l "$URL" "$LOG" >"$OUT/player.txt" 2>&1
 
 tries=0
-while kill -0 $BACKEND 2>/dev/null || kill -0 $PLANES 2>/dev/null || kill -0 $ODOMETRY 2>/dev/null; do
-  tries=$((tries + 1))
-  [ $tries -gt 1200 ] && exit 99
-  sleep 0.1
+for pid in $pids; do
+  while kill -0 "$pid" 2>/dev/null; do
+    tries=$((tries + 1))
+    [ $tries -gt 1200 ] && exit 99
+    sleep 0.1
+  done
 done
-wait $ODOMETRY
-odometry_code=$?
-wait $PLANES
-planes_code=$?
-wait $BACKEND
-echo "$odometry_code $planes_code $?" >"$OUT/codes"
+codes=''
+for pid in $pids; do
+  wait "$pid"
+  codes="$codes$? "
+done
+echo "${codes% }" >"$OUT/codes"

@@ -51,17 +51,14 @@ void report(const RunRecord& record, const std::string& out_dir) {
 // now.
 std::vector<std::string> stagesOf(const Arguments& arguments) {
   if (arguments.layers == "keyframes") return {"odometry", "backend"};
-  return {"odometry", "planes", "backend"};
+  if (arguments.layers == "walls") return {"odometry", "planes", "backend"};
+  return {"odometry", "planes", "free-space", "rooms", "backend"};
 }
 
-void run(const Arguments& arguments, bool layers_given) {
+void run(const Arguments& arguments) {
   if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
   ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry, stagesOf(arguments),
                         progressLine(), arguments.record};
-  if (layers_given && (arguments.layers == "rooms" || arguments.layers == "floors"))
-    std::fprintf(stderr,
-                 "sgraphs: warning: --layers %s: this version fills the layers keyframes and walls only\n",
-                 arguments.layers.c_str());
   Replay replay(std::move(options));
   replay.run();
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%60s\r", "");
@@ -93,14 +90,14 @@ void addReplay(CLI::App& app) {
   command->add_option(
       "--odometry", arguments->odometry,
       "Odometry factor: lidar, encoder or fused; default: fused if the log has odometry, else lidar");
-  CLI::Option* layers = command->add_option("--layers", arguments->layers, "Highest layer of the graph")
-                            ->check(CLI::IsMember({"keyframes", "walls", "rooms", "floors"}))
-                            ->capture_default_str();
+  command->add_option("--layers", arguments->layers, "Highest layer of the graph")
+      ->check(CLI::IsMember({"keyframes", "walls", "rooms", "floors"}))
+      ->capture_default_str();
   command->add_option("--map", arguments->map_dir,
                       "Result of an earlier run to continue (not in this version)");
   command->add_option("--record", arguments->record,
                       "Log that everything said on the bus is written to, for lcm-spy and lcm-logplayer");
-  command->callback([arguments, layers] { run(*arguments, layers->count() > 0); });
+  command->callback([arguments] { run(*arguments); });
 }
 
 }  // namespace sgraphs::cli

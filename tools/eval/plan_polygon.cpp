@@ -69,13 +69,6 @@ std::vector<double> slabBorders(const std::vector<Edge>& edges) {
 
 }  // namespace
 
-bool contains(const Corners& polygon, const Eigen::Vector2d& p) {
-  std::vector<Interval> pieces;
-  addInsideAt(polygon, p.y(), pieces);
-  return std::any_of(pieces.begin(), pieces.end(),
-                     [&](const Interval& piece) { return piece.first <= p.x() && p.x() < piece.second; });
-}
-
 std::vector<Interval> insideAt(const std::vector<Corners>& polygons, double y) {
   std::vector<Interval> pieces;
   for (const Corners& polygon : polygons) addInsideAt(polygon, y, pieces);

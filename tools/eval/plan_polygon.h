@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "common/geometry/convex_polygon.h"
+
 namespace sgraphs {
 
 // A polygon that need not be convex, not closed, either way around; inside is what the even-odd rule says.
 using Corners = std::vector<Eigen::Vector2d>;
-
-bool contains(const Corners& polygon, const Eigen::Vector2d& p);
 
 // Where the line at this y is inside one of the polygons: from x to x, ascending, apart from each other.
 std::vector<std::pair<double, double>> insideAt(const std::vector<Corners>& polygons, double y);

@@ -20,6 +20,7 @@ namespace sgraphs {
 namespace {
 
 constexpr double kEndOverdue_s = 30;
+constexpr double kAwaitedOverdue_s = 10;
 constexpr int kPoll_ms = 100;
 
 sigset_t stopSignals() {
@@ -108,7 +109,8 @@ int runProcess(const ProcessText& text, int argc, char** argv,
 
 void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
   SignalWatch signals;
-  Stopwatch status, silence, overdue;
+  Stopwatch status, silence, overdue, waiting;
+  int64_t awaited = -1;
   bool heard = false;
   hooks.publish_status();
   spdlog::info("listening");
@@ -120,6 +122,17 @@ void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
     if (bus.dispatch(kPoll_ms)) {
       heard = true;
       silence.restart();
+      overdue.restart();
+    }
+    if (const int64_t now = hooks.awaited(); now < 0 || now != awaited) {
+      awaited = now;
+      waiting.restart();
+    } else if (waiting.elapsedSeconds() > kAwaitedOverdue_s) {
+      spdlog::warn(
+          "round {}: an answer to its map did not arrive within {:.0f} s; the next one goes on without it",
+          awaited, kAwaitedOverdue_s);
+      hooks.give_up_awaited();
+      waiting.restart();
     }
     if (!hooks.overdue()) overdue.restart();
     if (overdue.elapsedSeconds() > kEndOverdue_s)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -30,9 +31,14 @@ int runProcess(const ProcessText& text, int argc, char** argv,
 // What the loop needs of a node.
 struct LoopHooks {
   std::function<bool()> done;
-  std::function<void()> publish_status;                  // once a second
-  std::function<void(const std::string&)> finish;        // ends the stream for this reason
-  std::function<bool()> overdue = [] { return false; };  // the end is announced; it must follow within 30 s
+  std::function<void()> publish_status;            // once a second
+  std::function<void(const std::string&)> finish;  // ends the stream for this reason
+  // The end is announced; it must follow within 30 s of the last message.
+  std::function<bool()> overdue = [] { return false; };
+  // What the node waits for before anything else can be done, as a number that changes with it; -1: nothing.
+  // After 10 s of the same it is given up: the message was lost.
+  std::function<int64_t()> awaited = [] { return int64_t{-1}; };
+  std::function<void()> give_up_awaited = [] {};
 };
 
 // Dispatches until the node is done (with `stay`: until SIGINT or SIGTERM, which always stop it cleanly).

@@ -13,6 +13,8 @@ Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
   if (!options_.odometry.empty()) parseOdometryMode(options_.odometry);
   odometry_.emplace(bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
   planes_.emplace(bus_, makePlanesStep(options_.config));
+  free_space_.emplace(bus_, makeFreeSpaceStep(options_.config));
+  rooms_.emplace(bus_, makeRoomsStep(options_.config));
   backend_.emplace(bus_, makeBackendCore(options_.config));
   if (!options_.record.empty()) startRecording();
   inspect();
@@ -132,10 +134,14 @@ RunRecord Replay::record() const {
   record.wall_s = wall_s_;
   record.realtime_factor = wall_s_ > 0 ? record.duration_s / wall_s_ : 0;
   record.stages["decode"] = timingOf(odometry_->decodeLatency());
-  record.stages["odometry"] = timingOf(odometry_->stepLatency());
-  if (planes_->stepLatency().count() > 0) record.stages["planes"] = timingOf(planes_->stepLatency());
-  addGaps(record, odometry_->gate());
-  addGaps(record, planes_->gate());
+  const auto add = [&record](const std::string& stage, const auto& node) {
+    if (node.stepLatency().count() > 0) record.stages[stage] = timingOf(node.stepLatency());
+    addGaps(record, node.gate());
+  };
+  add("odometry", *odometry_);
+  add("planes", *planes_);
+  add("free_space", *free_space_);
+  add("rooms", *rooms_);
   if (counts_->lost_packets > 0) record.gaps["lidar_packets"] = counts_->lost_packets;
   return record;
 }

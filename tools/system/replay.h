@@ -57,6 +57,8 @@ class Replay {
   MemoryBus bus_;
   std::optional<OdometryNode> odometry_;
   std::optional<PlanesNode> planes_;
+  std::optional<FreeSpaceNode> free_space_;
+  std::optional<RoomsNode> rooms_;
   std::optional<BackendNode> backend_;
   std::unique_ptr<LogWriter> recording_;
   int64_t now_us_ = 0;  // receive time of the event that is being worked on

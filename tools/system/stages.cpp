@@ -3,8 +3,10 @@
 #include <utility>
 
 #include "backend/backend.h"
+#include "perception/free_space/free_space_mapper.h"
 #include "perception/odometry/odometry.h"
 #include "perception/planes/plane_segmentation.h"
+#include "perception/rooms/room_finder.h"
 
 namespace sgraphs {
 
@@ -30,6 +32,20 @@ OdometryParts makeOdometryParts(const SystemConfig& config, const std::shared_pt
 PlanesNode::Step makePlanesStep(const SystemConfig& config) {
   return [segmentation = PlaneSegmentation(config.planes)](const Keyframe& keyframe) {
     return segmentation.step(keyframe);
+  };
+}
+
+FreeSpaceNode::Step makeFreeSpaceStep(const SystemConfig& config) {
+  auto mapper = std::make_shared<FreeSpaceMapper>(config.free_space);
+  return [mapper](const std::optional<Keyframe>& keyframe, const MapUpdate& update) -> const FreeSpace& {
+    return mapper->step(keyframe, update);
+  };
+}
+
+RoomsNode::Step makeRoomsStep(const SystemConfig& config) {
+  auto finder = std::make_shared<RoomFinder>(config.rooms);
+  return [finder](const FreeSpace& free_space, const MapUpdate& update) {
+    return finder->step(free_space, update);
   };
 }
 

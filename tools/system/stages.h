@@ -5,8 +5,10 @@
 
 #include "backend/backend_node.h"
 #include "drivers/velodyne/vlp16_decoder.h"
+#include "perception/free_space/free_space_node.h"
 #include "perception/odometry/odometry_node.h"
 #include "perception/planes/planes_node.h"
+#include "perception/rooms/rooms_node.h"
 #include "tools/system/system_config.h"
 
 namespace sgraphs {
@@ -15,6 +17,8 @@ namespace sgraphs {
 OdometryParts makeOdometryParts(const SystemConfig& config,
                                 const std::shared_ptr<Vlp16Counts>& counts = nullptr);
 PlanesNode::Step makePlanesStep(const SystemConfig& config);
+FreeSpaceNode::Step makeFreeSpaceStep(const SystemConfig& config);
+RoomsNode::Step makeRoomsStep(const SystemConfig& config);
 BackendCore makeBackendCore(const SystemConfig& config);
 
 // "3 packets: wrong block flag; …"; empty if none was refused.

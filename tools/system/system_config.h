@@ -2,8 +2,10 @@
 
 #include "backend/backend_config.h"
 #include "common/config/config_io.h"
+#include "perception/free_space/free_space_config.h"
 #include "perception/odometry/odometry_config.h"
 #include "perception/planes/planes_config.h"
+#include "perception/rooms/rooms_config.h"
 
 namespace sgraphs {
 
@@ -11,11 +13,15 @@ namespace sgraphs {
 struct SystemConfig {
   OdometryConfig odometry;
   PlanesConfig planes;
+  FreeSpaceConfig free_space;
+  RoomsConfig rooms;
   BackendConfig backend;
 
   void visit(ConfigVisitor& v) {
     v.section("odometry", odometry, "Scans to poses and keyframes");
     v.section("planes", planes, "Keyframe clouds to planes");
+    v.section("free_space", free_space, "Keyframe clouds and the optimised map to free space");
+    v.section("rooms", rooms, "Free space and walls to rooms, doorways and floors");
     v.section("backend", backend, "Observations to one optimised graph");
   }
 };

@@ -17,7 +17,7 @@ void addOurs(TableSpec& table, const std::string& odometry, const std::string& f
 }  // namespace
 
 std::vector<std::string> filledLayers() {
-  return {"keyframes", "walls"};
+  return {"keyframes", "walls", "rooms", "floors"};
 }
 
 TableSpec ateTable(const std::vector<std::string>& layers, bool baselines, std::vector<std::string> scenes) {
