@@ -8,8 +8,8 @@ namespace sgraphs {
 // Members are listed once, in visit(); see config_io.h.
 struct EvidenceConfig {
   double cell_m = 0.1;
-  double max_range_m = 12.0;
-  double misses_per_hit = 1.5;
+  double max_range_m = 15.0;
+  double misses_per_hit = 1.0;
   double misses_per_wall_hit = 25.0;
   double min_wall_length_m = 1.5;
   double min_wall_top_m = 1.0;

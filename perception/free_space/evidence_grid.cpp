@@ -11,6 +11,8 @@ namespace {
 // way.
 constexpr int kFirstUpperSlice = 5;
 constexpr unsigned kAll = (1u << kNumSlices) - 1;
+// 0.7 to 1.1 m: seen from anywhere, and more than desks reach.
+constexpr unsigned kMiddle = (1u << 3) | (1u << 4);
 constexpr unsigned kUpper = kAll & ~((1u << kFirstUpperSlice) - 1);
 
 constexpr int kTrail = 3;  // hits on a wall per hit beside it, at most, where somebody walked through
@@ -47,6 +49,12 @@ ColumnState classify(const ColumnVotes& votes, bool is_pane, const EvidenceConfi
       occupied |= 1u << i;
     else if (votes.misses[slice] > 0)
       free |= 1u << i;
+  }
+  // What hangs above a place that was seen free is in nobody's way; most often somebody stood there, and the
+  // LiDAR has since come too near to see the upper part again.
+  if ((free & kMiddle) == kMiddle) {
+    free |= occupied & kUpper;
+    occupied &= ~kUpper;
   }
   const int upper_occupied = std::popcount(occupied & kUpper), upper_free = std::popcount(free & kUpper);
   ColumnState state;

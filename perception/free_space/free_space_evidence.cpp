@@ -27,9 +27,9 @@ void FreeSpaceEvidence::arrive(const Keyframe& keyframe, const MapUpdate& update
   KeyframeState& state = views_[keyframe.id];
   if (state.added) apply(keyframe.id, state, -1);
   state = KeyframeState{};
-  state.rays = thinner_.thin(keyframe);
   state.T_map_body = T_map_body;
   state.body_height_m = surface_.step(keyframe, T_map_body);
+  state.rays = thinner_.thin(keyframe, state.body_height_m);
   if (!state.body_height_m || last_height_m_) {
     if (state.body_height_m) last_height_m_ = state.body_height_m;
     return;
@@ -86,7 +86,8 @@ void FreeSpaceEvidence::settle(KeyframeId id) {
   const auto it = views_.find(id);
   if (it == views_.end()) return;
   KeyframeState& state = it->second;
-  const bool wanted = state.floor.valid() && state.body_height_m && state.T_map_body.isFinite();
+  const bool wanted = state.floor.valid() && state.body_height_m && state.T_map_body.isFinite() &&
+                      storey(state.floor).reaches(state.T_map_body.translation.head<2>());
   if (state.added && (!wanted || state.floor != state.floor_added || hasMoved(state))) apply(id, state, -1);
   if (wanted && !state.added) apply(id, state, +1);
 }

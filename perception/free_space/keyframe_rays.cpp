@@ -9,6 +9,10 @@ namespace {
 constexpr float kGroup_m = 0.6f;   // viewpoints nearer than this see the same
 constexpr size_t kMaxGroups = 16;  // later viewpoints join the last
 constexpr float kMargin_m = 3.0f;  // body to viewpoint, at most
+// Heights over the walking surface between which things stand in the way, body a little tilted.
+constexpr double kFloorNoise_m = 0.05;
+constexpr double kBandTop_m = 2.1;
+constexpr double kEverywhere_m = 1e3;
 constexpr float kLowest_m = -2.0f;
 constexpr float kHeight_m = 0.2f;  // of the 32 heights that are told apart
 
@@ -41,10 +45,14 @@ RayThinner::RayThinner(double cell_m, double max_range_m)
       max_range_m_(static_cast<float>(max_range_m)),
       half_(static_cast<int>(std::ceil((max_range_m + kMargin_m) / cell_m))) {}
 
-bool RayThinner::isNew(int group, const Eigen::Vector3f& end) {
-  const int x = static_cast<int>(std::floor(end.x() / cell_m_)) + half_;
-  const int y = static_cast<int>(std::floor(end.y() / cell_m_)) + half_;
+bool RayThinner::isNew(int group, const Eigen::Vector3f& end, bool coarse) {
+  int x = static_cast<int>(std::floor(end.x() / cell_m_)) + half_;
+  int y = static_cast<int>(std::floor(end.y() / cell_m_)) + half_;
   if (x < 0 || y < 0 || x >= 2 * half_ || y >= 2 * half_) return false;
+  if (coarse) {  // one of four cells stands for all
+    x &= ~1;
+    y &= ~1;
+  }
   const int z = std::clamp(static_cast<int>((end.z() - kLowest_m) / kHeight_m), 0, 31);
   const auto g = static_cast<size_t>(group);
   const auto size = static_cast<size_t>(4 * half_ * half_);
@@ -57,7 +65,9 @@ bool RayThinner::isNew(int group, const Eigen::Vector3f& end) {
   return true;
 }
 
-KeyframeRays RayThinner::thin(const Keyframe& keyframe) {
+KeyframeRays RayThinner::thin(const Keyframe& keyframe, std::optional<double> body_height_m) {
+  const auto low = static_cast<float>(body_height_m ? kFloorNoise_m - *body_height_m : -kEverywhere_m);
+  const auto high = static_cast<float>(body_height_m ? kBandTop_m - *body_height_m : kEverywhere_m);
   KeyframeRays out;
   const size_t scans = std::min<size_t>(keyframe.T_keyframe_body.size(), 256);
   for (size_t i = 0; i < scans; ++i)
@@ -72,7 +82,8 @@ KeyframeRays RayThinner::thin(const Keyframe& keyframe) {
     const bool is_hit = range <= max_range_m_;
     const Eigen::Vector3f end =
         is_hit ? p.position_body : Eigen::Vector3f(viewpoint + ray * (max_range_m_ / range));
-    if (isNew(group[p.scan], end)) out.rays.push_back(makeRay(end, p.scan, is_hit));
+    const bool coarse = !is_hit || end.z() < low || end.z() > high;
+    if (isNew(group[p.scan], end, coarse)) out.rays.push_back(makeRay(end, p.scan, is_hit));
   }
   for (std::vector<uint32_t>& ends : ends_) std::fill(ends.begin(), ends.end(), 0u);
   out.rays.shrink_to_fit();

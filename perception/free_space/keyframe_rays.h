@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/types/keyframe.h"
@@ -29,11 +30,13 @@ struct KeyframeRays {
 class RayThinner {
  public:
   RayThinner(double cell_m, double max_range_m);
-  KeyframeRays thin(const Keyframe& keyframe);
+  // Rays to the floor and to the ceiling only clear what they pass: they are thinned more where the height of
+  // the body over the walking surface is known.
+  KeyframeRays thin(const Keyframe& keyframe, std::optional<double> body_height_m);
 
  private:
   // True if no ray from this group of viewpoints ended here yet.
-  bool isNew(int group, const Eigen::Vector3f& end);
+  bool isNew(int group, const Eigen::Vector3f& end, bool coarse);
 
   float cell_m_;
   float max_range_m_;

@@ -7,7 +7,7 @@ namespace sgraphs {
 namespace {
 
 constexpr double kMargin_m = 3.5;  // body to viewpoint and a few cells
-constexpr float kStandOff = 1.5f;  // cells before a hit that the ray does not clear: it may graze the surface
+constexpr float kStandOff = 0.5f;  // cells before a hit that the ray does not clear: ranges are noisy
 constexpr float kMinChord = 0.3f;  // cells: a ray that only clips a corner has not seen the cell
 constexpr double kBodyRadius_m = 0.2;
 constexpr float kHuge = 1e30f;

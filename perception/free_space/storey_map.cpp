@@ -44,7 +44,20 @@ StoreyMap::StoreyMap(FloorId floor, const EvidenceConfig& config) : config_(conf
   rooms_.cell_m = navigation_.cell_m = config.cell_m;
 }
 
+bool StoreyMap::reaches(const Eigen::Vector2d& position_map) const {
+  const Eigen::Vector2d cell = position_map / config_.cell_m;
+  if (!(cell.cwiseAbs().maxCoeff() < kMaxCells)) return false;
+  CellBox box = views_;
+  const int x = static_cast<int>(std::floor(cell.x())), y = static_cast<int>(std::floor(cell.y()));
+  const int around = static_cast<int>(std::ceil(2 * config_.max_range_m / config_.cell_m));
+  box.include(x - around, y - around);
+  box.include(x + around, y + around);
+  return static_cast<double>(box.width()) * box.height() <= kMaxCells;
+}
+
 void StoreyMap::add(const KeyframeView& view, double surface_z_m, int sign) {
+  views_.include(view.x0, view.y0);
+  views_.include(view.x0 + view.size, view.y0 + view.size);
   evidence_.add(view, sign);
   surface_sum_um_ += sign * micrometres(surface_z_m);
   num_views_ += sign;

@@ -11,8 +11,13 @@ namespace sgraphs {
 // Free space of one storey: evidence, the two grids made of it, and their clearance.
 class StoreyMap {
  public:
+  static constexpr double kMaxCells =
+      25e6;  // a quarter of a square kilometre; a pose gone wild costs no more
+
   StoreyMap(FloorId floor, const EvidenceConfig& config);
 
+  // Whether a view around this place can be added: the grids are no larger than kMaxCells.
+  bool reaches(const Eigen::Vector2d& position_map) const;
   // A keyframe's view with the height of the walking surface it stands on: added (sign 1) or taken back (-1).
   void add(const KeyframeView& view, double surface_z_m, int sign);
   void addWall(const WallTrace& trace, int sign);
@@ -39,6 +44,7 @@ class StoreyMap {
   EvidenceGrid evidence_;
   int64_t surface_sum_um_ = 0;  // over the views, in whole micrometres: taking back is exact
   int64_t num_views_ = 0;
+  CellBox views_;  // cells of all views there ever were
   CellBox cells_;  // of the grids, in cells of the map
   StoreyGrid rooms_, navigation_;
   // By column as the votes have it, before islands are filled.

@@ -12,8 +12,9 @@ constexpr double kRadius_m = 6.0;    // floors farther away are seen at a grazin
 constexpr double kHighest_m = 0.10;  // the surface lies lower below the body than this,
 constexpr double kLowest_m = 1.60;   // and not lower than this
 constexpr double kBin_m = 0.05;
-constexpr size_t kBins = 30;  // (kLowest_m - kHighest_m) / kBin_m
-constexpr int kMinPoints = 60;
+constexpr size_t kBins = 30;   // (kLowest_m - kHighest_m) / kBin_m
+constexpr size_t kStride = 3;  // every third point tells as much as all
+constexpr int kMinPoints = 30;
 constexpr double kDominant = 0.25;  // of the fullest bin: lower levels than that are no floor
 constexpr double kSame_m = 0.12;    // a keyframe on a step or a plank sees other heights
 constexpr size_t kRemembered = 15;  // keyframes
@@ -24,7 +25,8 @@ std::optional<double> SurfaceHeight::measure(const Keyframe& keyframe, const Eig
   const Eigen::Vector3f up = up_body.cast<float>();
   std::array<int, kBins> count{};
   std::vector<float> depths;
-  for (const KeyframePoint& p : keyframe.points) {
+  for (size_t i = 0; i < keyframe.points.size(); i += kStride) {
+    const KeyframePoint& p = keyframe.points[i];
     const float height = up.dot(p.position_body);
     const float depth = -height;
     if (!(depth > kHighest_m && depth < kLowest_m)) continue;
