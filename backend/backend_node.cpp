@@ -137,7 +137,11 @@ void BackendNode::onRooms(const rooms_t& m) {
     return gate_.reject(channel, "a round that cannot be, or chunks that do not match");
   if (!chunks) return;
   std::optional<Rooms> rooms = fromMessages(*chunks);
-  if (!rooms) return gate_.reject(channel, "content that cannot be right");
+  if (!rooms) {
+    gate_.reject(channel, "content that cannot be right");
+    joiner_.lost(channel, m.round);
+    return advance();
+  }
   if (!joiner_.arrived({channel, m.round, m.header.seq})) return gate_.reject(channel, "its round is closed");
   rooms_held_[m.round] = std::move(*rooms);
   rooms_why_not_ = m.why_not;

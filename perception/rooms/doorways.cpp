@@ -6,6 +6,7 @@
 namespace sgraphs {
 namespace {
 
+constexpr double kMinWidth_m = 0.3;   // nobody passes a narrower one
 constexpr double kMaxOff_m = 0.7;      // a passage may be found so far from its wall's face
 constexpr double kOpenEnd = 1.3;       // a side this much wider than its passage has no jambs
 constexpr double kParallel_cos = 0.8;  // of the chord and the wall: 37 degrees, passages are short
@@ -59,7 +60,7 @@ std::vector<Doorway> doorwaysOf(const std::map<PassageId, Passage>& passages, co
                                 const std::map<PlaneId, Wall>& walls) {
   std::vector<Doorway> doorways;
   for (const auto& [id, passage] : passages) {
-    if (!passage.is_door) continue;
+    if (!passage.is_door || static_cast<double>(passage.width_m()) < kMinWidth_m) continue;
     RoomId a = rooms.roomOf(passage.a), b = rooms.roomOf(passage.b);
     if (a == b) continue;  // both none, or one room
     if (!a.valid() || (b.valid() && b < a)) std::swap(a, b);

@@ -176,5 +176,24 @@ TEST_F(LossyFeedbackTest, AnAnswerToARoundThatHasNotRunIsRefused) {
   EXPECT_EQ(core->inputs.size(), 1u);
 }
 
+TEST_F(LossyFeedbackTest, AnAnswerWhoseContentCannotBeIsLost) {
+  play();
+  rooms_t m{};
+  m.header.session = 7;
+  m.num_chunks = 1;
+  m.floors.resize(1);
+  m.floors[0].id = -1;
+  m.num_floors = 1;
+  publish(bus, channels::kRooms, m);
+  free_space_t f{};
+  f.header.session = 7;
+  f.num_chunks = 1;
+  publish(bus, channels::kFreeSpace, f);
+  bus.dispatch(0);
+  EXPECT_EQ(core->inputs.size(), 2u) << "the round goes on without";
+  EXPECT_FALSE(core->inputs[1].rooms);
+  EXPECT_EQ(backend.gate().counts().at("ROOMS").rejected, 1);
+}
+
 }  // namespace
 }  // namespace sgraphs
