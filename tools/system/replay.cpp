@@ -127,7 +127,7 @@ void Replay::run() {
                         "' belong to no event and were skipped");
   if (!odometry_->done()) endWithoutStreamEnd();
   others_->finish();
-  // A stage of this process that gives no answer is a fault of ours, and no reason to keep what there is.
+  // A stage of this process that gives no answer is a fault of ours, and no reason to lose what there is.
   if (!backend_->done()) backend_->finish("a stage did not answer every round");
   wall_s_ = watch.elapsedSeconds();
   if (recording_) recording_->close();
