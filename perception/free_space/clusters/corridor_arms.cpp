@@ -34,37 +34,39 @@ struct Arm {
   bool goes_on = false;  // straight on beyond the cut
 };
 
-struct Wall {
-  size_t begin, end;  // sides of the loop, modulo its size
-  BorderLine line;
-};
-
-// The straight pieces of a loop that are walls, in turn.
-std::vector<Wall> wallsOf(const CellLoop& loop, double cell_m) {
+// Pieces of a loop that are walls, in turn: first and last corner, modulo the loop's size.
+std::vector<std::pair<size_t, size_t>> wallsOf(const CellLoop& loop, double cell_m) {
   const std::vector<size_t> stay = simplifiedLoop(loop, {}, 2.2 * cell_m);
-  std::vector<Wall> walls;
+  std::vector<std::pair<size_t, size_t>> walls;
   for (size_t k = 0; k < stay.size(); ++k) {
     const size_t end = k + 1 < stay.size() ? stay[k + 1] : stay[0] + loop.corners.size();
-    if (isWall(loop, stay[k], end, kMinWall_m))
-      walls.push_back({stay[k], end, lineOf(loop, stay[k], end, cell_m)});
+    if (isWall(loop, stay[k], end, kMinWall_m)) walls.emplace_back(stay[k], end);
   }
   return walls;
 }
 
 void addCandidates(const CellLoop& loop, double cell_m, std::vector<Candidate>& candidates) {
-  const std::vector<Wall> walls = wallsOf(loop, cell_m);
+  const auto walls = wallsOf(loop, cell_m);
+  const auto at = [&loop](size_t i) -> const Eigen::Vector2d& {
+    return loop.corners[i % loop.corners.size()];
+  };
   for (size_t k = 0; k < walls.size(); ++k) {
-    const Wall &in = walls[k], &out = walls[(k + 1) % walls.size()];
-    const size_t n = loop.corners.size();
-    const Eigen::Vector2d &last = loop.corners[in.end % n], &first = loop.corners[out.begin % n];
-    const double turn = cross(in.line.direction, out.line.direction);
-    if (turn > -kMinTurn || (first - last).norm() > kMaxCorner_m) continue;
+    const auto [in_begin, in_end] = walls[k];
+    const auto [out_begin, out_end] = walls[(k + 1) % walls.size()];
+    const Eigen::Vector2d &last = at(in_end), &first = at(out_begin);
+    if ((first - last).norm() > kMaxCorner_m) continue;
+    const Eigen::Vector2d in_chord = (last - at(in_begin)).normalized();
+    if (cross(in_chord, (at(out_end) - first).normalized()) > -0.5 * kMinTurn) continue;
+    const BorderLine in = lineOf(loop, in_begin, in_end, cell_m),
+                     out = lineOf(loop, out_begin, out_end, cell_m);
+    const double turn = cross(in.direction, out.direction);
+    if (turn > -kMinTurn) continue;
     // Where the lines of the walls meet: noise takes the loop's own corner off.
     const Eigen::Vector2d corner =
-        in.line.point + cross(out.line.point - in.line.point, out.line.direction) / turn * in.line.direction;
+        in.point + cross(out.point - in.point, out.direction) / turn * in.direction;
     if ((corner - 0.5 * (first + last)).norm() > kMaxCorner_m) continue;
-    candidates.push_back({loop.label, corner, in.line.direction, out.line.direction});
-    candidates.push_back({loop.label, corner, -out.line.direction, -in.line.direction});
+    candidates.push_back({loop.label, corner, in.direction, out.direction});
+    candidates.push_back({loop.label, corner, -out.direction, -in.direction});
   }
 }
 

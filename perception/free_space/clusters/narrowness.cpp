@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSameCut_m = 0.3;  // cuts nearer than this are the same
 
-// Regions as they are after some joins.
+// Regions as they are after some joins; a count of 0 means that there are none.
 class JoinedRegions {
  public:
   JoinedRegions(const StoreyGrid& grid, const CellLabels& labels, int32_t count)
@@ -46,7 +46,8 @@ class JoinedRegions {
  private:
   bool isIn(const Eigen::Vector2d& p, int32_t label) {
     const int32_t at = labelAt(grid_, labels_, p);
-    return at == label || (at != kNoLabel && sets_.find(at) == sets_.find(label));
+    if (at == label || at == kNoLabel) return at == label;
+    return sets_.size() > 0 && sets_.find(at) == sets_.find(label);
   }
   double reach(const Eigen::Vector2d& from, const Eigen::Vector2d& direction, int32_t label, double max_m) {
     const double step_m = 0.5 * grid_.cell_m;
@@ -81,7 +82,7 @@ bool isOneRoom(const FreeSpaceGraphConfig& config, const std::vector<Cut>& gaps,
 }  // namespace
 
 double relativeWidth(const StoreyGrid& grid, const CellLabels& labels, const Cut& cut, int32_t label) {
-  return JoinedRegions(grid, labels, label + 1).relativeWidth(cut, label, label);
+  return JoinedRegions(grid, labels, 0).relativeWidth(cut, label, label);
 }
 
 double widthLimit(const FreeSpaceGraphConfig& config, const std::vector<Cut>& former, const Cut& cut) {

@@ -43,27 +43,35 @@ struct Pieces {
 Pieces piecesOf(const StoreyGrid& grid, const CellLabels& labels) {
   Pieces pieces;
   pieces.of_cell.assign(labels.size(), kNoLabel);
-  std::vector<uint32_t> open;
-  for (size_t start = 0; start < labels.size(); ++start) {
-    if (labels[start] == kNoLabel || pieces.of_cell[start] != kNoLabel) continue;
-    const auto piece = static_cast<int32_t>(pieces.label.size());
-    pieces.label.push_back(labels[start]);
-    pieces.size.push_back(0);
-    pieces.of_cell[start] = piece;
-    open.push_back(static_cast<uint32_t>(start));
-    while (!open.empty()) {
-      const size_t cell = open.back();
-      open.pop_back();
-      ++pieces.size.back();
-      const int x = cellX(grid, cell), y = cellY(grid, cell);
-      for (size_t k = 0; k < 4; ++k) {
-        if (!grid.contains(x + kCellSteps[k].x, y + kCellSteps[k].y)) continue;
-        const size_t next = grid.index(x + kCellSteps[k].x, y + kCellSteps[k].y);
-        if (pieces.of_cell[next] != kNoLabel || labels[next] != labels[start]) continue;
-        pieces.of_cell[next] = piece;
-        open.push_back(static_cast<uint32_t>(next));
+  DisjointSets sets;
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) {
+      const size_t i = grid.index(x, y), below = i - static_cast<size_t>(grid.width);
+      if (labels[i] == kNoLabel) continue;
+      int32_t& piece = pieces.of_cell[i];
+      if (x > 0 && labels[i - 1] == labels[i]) piece = pieces.of_cell[i - 1];
+      if (y > 0 && labels[below] == labels[i]) {
+        const int32_t other = pieces.of_cell[below];
+        if (piece == kNoLabel)
+          piece = other;
+        else if (piece != other)
+          sets.join(std::min(sets.find(piece), sets.find(other)),
+                    std::max(sets.find(piece), sets.find(other)));
       }
+      if (piece == kNoLabel) piece = sets.add();
     }
+  std::vector<int32_t> name(static_cast<size_t>(sets.size()), kNoLabel);
+  for (size_t i = 0; i < labels.size(); ++i) {
+    int32_t& piece = pieces.of_cell[i];
+    if (piece == kNoLabel) continue;
+    int32_t& n = name[static_cast<size_t>(sets.find(piece))];
+    if (n == kNoLabel) {
+      n = static_cast<int32_t>(pieces.label.size());
+      pieces.label.push_back(labels[i]);
+      pieces.size.push_back(0);
+    }
+    piece = n;
+    ++pieces.size[static_cast<size_t>(n)];
   }
   return pieces;
 }
@@ -163,6 +171,7 @@ void straightenAt(const StoreyGrid& grid, const Cut& cut, int32_t a, int32_t b, 
 void keepConnected(const StoreyGrid& grid, Regions& regions) {
   Pieces pieces = piecesOf(grid, regions.labels);
   std::vector<uint8_t> settled = mainPieces(pieces, regions.count);
+  if (std::find(settled.begin(), settled.end(), 0) == settled.end()) return makeDense(regions);
   while (std::find(settled.begin(), settled.end(), 0) != settled.end()) {
     // How much each loose piece touches settled ones, by (piece, label).
     std::map<std::pair<int32_t, int32_t>, int> touch;

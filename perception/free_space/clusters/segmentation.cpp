@@ -60,7 +60,8 @@ Segmentation segment(const StoreyGrid& rooms, const FreeSpaceGraphConfig& config
   for (const Contact& contact : contactsOf(rooms, regions.labels)) {
     const Cut* known = cutAt(rooms, contact, cuts);
     const auto cut = known ? std::optional<Cut>(*known) : narrowestAt(rooms, regions.labels, contact);
-    if (cut) result.passages.push_back({contact.a, contact.b, turned(rooms, regions.labels, contact, *cut)});
+    if (cut && cut->width() >= config.min_passage_m)
+      result.passages.push_back({contact.a, contact.b, turned(rooms, regions.labels, contact, *cut)});
   }
   return result;
 }

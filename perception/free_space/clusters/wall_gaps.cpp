@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/geometry/convex_polygon.h"
 #include "perception/free_space/clusters/cell_rays.h"
@@ -50,15 +51,26 @@ bool face(const WallEnd& a, const WallEnd& b, double max_gap_m) {
          std::max(std::abs(cross(a.along, gap)), std::abs(cross(b.along, gap))) <= kMaxOffset_m;
 }
 
-// Free all the way, with something behind on both sides.
-bool isOpening(const StoreyGrid& grid, const CellLabels& labels, const Cut& cut, int32_t label) {
-  const Eigen::Vector2d along = (cut.right - cut.left).normalized(), across(-along.y(), along.x());
-  if (labelAt(grid, labels, cut.middle()) != label) return false;
-  const double free_m = reachWithin(grid, labels, cut.middle(), along, label, cut.width()) +
-                        reachWithin(grid, labels, cut.middle(), -along, label, cut.width());
-  return free_m > cut.width() - 3 * grid.cell_m &&
-         reachWithin(grid, labels, cut.middle(), across, label, kMinDepth_m) >= kMinDepth_m - 0.01 &&
-         reachWithin(grid, labels, cut.middle(), -across, label, kMinDepth_m) >= kMinDepth_m - 0.01;
+// The narrowest line parallel to the gap, within the thickness of walls, that crosses the region from
+// obstacle to obstacle; none where there is no space behind it on both sides.
+std::optional<Cut> narrowestIn(const StoreyGrid& grid, const CellLabels& labels, const WallEnd& a,
+                               const WallEnd& b) {
+  const Eigen::Vector2d along = (b.corner - a.corner).normalized(), across(-along.y(), along.x());
+  const double gap_m = (b.corner - a.corner).norm();
+  std::optional<Cut> best;
+  for (int k = -6; k <= 6; ++k) {
+    const Eigen::Vector2d p = 0.5 * (a.corner + b.corner) + 0.5 * k * grid.cell_m * across;
+    if (labelAt(grid, labels, p) != a.label) continue;
+    const double back_m = reachWithin(grid, labels, p, -along, a.label, gap_m) + 0.5 * grid.cell_m;
+    const double on_m = reachWithin(grid, labels, p, along, a.label, gap_m) + 0.5 * grid.cell_m;
+    if (!best || back_m + on_m < best->width()) best = Cut{p - back_m * along, p + on_m * along, true};
+  }
+  if (!best || best->width() > gap_m + 3 * grid.cell_m || best->width() < gap_m - 5 * grid.cell_m)
+    return std::nullopt;
+  for (const double side : {-1.0, 1.0})
+    if (reachWithin(grid, labels, best->middle(), side * across, a.label, kMinDepth_m) < kMinDepth_m - 0.01)
+      return std::nullopt;
+  return best;
 }
 
 }  // namespace
@@ -67,20 +79,21 @@ std::vector<Cut> cutWallGaps(const StoreyGrid& grid, const FreeSpaceGraphConfig&
                              const std::vector<Cut>& former, Regions& regions) {
   std::vector<WallEnd> ends;
   for (const CellLoop& loop : loopsOf(grid, regions.labels)) addEnds(loop, grid.cell_m, ends);
-  std::vector<std::pair<Cut, int32_t>> gaps;
+  std::vector<std::pair<WallEnd, WallEnd>> gaps;
   for (size_t i = 0; i < ends.size(); ++i)
     for (size_t j = i + 1; j < ends.size(); ++j)
-      if (face(ends[i], ends[j], config.max_passage_m))
-        gaps.push_back({{ends[i].corner, ends[j].corner, true}, ends[i].label});
+      if (face(ends[i], ends[j], config.max_passage_m)) gaps.emplace_back(ends[i], ends[j]);
+  const auto width = [](const auto& gap) { return (gap.second.corner - gap.first.corner).norm(); };
   std::stable_sort(gaps.begin(), gaps.end(),
-                   [](const auto& a, const auto& b) { return a.first.width() < b.first.width(); });
+                   [&width](const auto& a, const auto& b) { return width(a) < width(b); });
   std::vector<Cut> cuts;
   RegionCutter cutter(grid, regions);
-  for (const auto& [cut, label] : gaps) {
-    if (!isOpening(grid, regions.labels, cut, label)) continue;
-    if (relativeWidth(grid, regions.labels, cut, label) >= widthLimit(config, former, cut)) continue;
-    cuts.push_back(cut);
-    cutter.cut(cut);
+  for (const auto& [a, b] : gaps) {
+    const auto cut = narrowestIn(grid, regions.labels, a, b);
+    if (!cut || relativeWidth(grid, regions.labels, *cut, a.label) >= widthLimit(config, former, *cut))
+      continue;
+    cuts.push_back(*cut);
+    cutter.cut(*cut);
   }
   cutter.finish();
   return cuts;
