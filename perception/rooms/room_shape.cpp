@@ -147,6 +147,24 @@ bool isSeenEnough(const RoomOutline& outline, const RoomShape& shape, double wal
          outline.covered_m2 >= kMinIncluded * (outline.covered_m2 + outline.left_out_m2);
 }
 
+std::optional<RoomShape> shapeAmong(const BorderEvidence& evidence, const FreeSpaceCluster& cluster,
+                                    const ClusterBorder& border, const RoomsConfig& config) {
+  const RoomOutline outline = outlineOf(border, evidence, config.boundary_cost_m);
+  if (outline.corners.size() < 3) return {};
+  RoomShape shape;
+  const std::vector<Side> sides = sidesOf(outline, evidence.lines);
+  for (const Side& side : sides) {
+    shape.polygon.push_back(side.a);
+    shape.corners.push_back({side.a, side.wall ? side.wall->id : PlaneId{}});
+  }
+  shape.area_m2 = polygonArea(shape.polygon);
+  shape.free_center_map = polygonCentroid(border.polygon);
+  const double walled_share = walledShare(sides);
+  if (!isSeenEnough(outline, shape, walled_share, config) || !classify(sides, config, shape)) return {};
+  if (border.frontierShare() > maxFrontierShare(shape, walled_share, cluster.is_corridor, config)) return {};
+  return shape;
+}
+
 }  // namespace
 
 std::vector<PlaneId> RoomShape::walls() const {
@@ -174,22 +192,15 @@ std::optional<RoomShape> roomShapeOf(const FreeSpaceCluster& cluster, const std:
                                      const RoomsConfig& config) {
   const ClusterBorder border = borderOf(cluster);
   if (border.edges.empty() || border.frontierShare() > kClosed * config.max_frontier_share) return {};
-  const BorderEvidence evidence = evidenceOf(border, walls, config.furniture_depth_m);
-  const RoomOutline outline = outlineOf(border, evidence, config.boundary_cost_m);
-  if (outline.corners.size() < 3) return {};
-
-  RoomShape shape;
-  const std::vector<Side> sides = sidesOf(outline, evidence.lines);
-  for (const Side& side : sides) {
-    shape.polygon.push_back(side.a);
-    shape.corners.push_back({side.a, side.wall ? side.wall->id : PlaneId{}});
-  }
-  shape.area_m2 = polygonArea(shape.polygon);
-  shape.free_center_map = polygonCentroid(border.polygon);
-  const double walled_share = walledShare(sides);
-  if (!isSeenEnough(outline, shape, walled_share, config) || !classify(sides, config, shape)) return {};
-  if (border.frontierShare() > maxFrontierShare(shape, walled_share, cluster.is_corridor, config)) return {};
-  return shape;
+  BorderEvidence evidence = evidenceOf(border, walls, config.furniture_depth_m);
+  if (evidence.num_seen == evidence.lines.size()) return shapeAmong(evidence, cluster, border, config);
+  // Where its walls close a room, it does not end where sight did.
+  const std::vector<OutlineLine> all = evidence.lines;
+  evidence.lines.resize(evidence.num_seen);
+  const std::optional<RoomShape> closed = shapeAmong(evidence, cluster, border, config);
+  if (closed && closed->kind != RoomKind::kInfinite) return closed;
+  evidence.lines = all;
+  return shapeAmong(evidence, cluster, border, config);
 }
 
 }  // namespace sgraphs
