@@ -13,6 +13,8 @@ namespace {
 constexpr double kMinCovered = 0.75;   // share of a room whose floor or furniture was seen
 constexpr double kMinIncluded = 0.75;  // share of a cluster that its room must hold
 constexpr double kMinEdgeShare = 0.3;  // of an edge that a wall stands along, else it is bare
+// Rooms of which so much of the outline is walled may have more frontier, by this factor.
+constexpr double kClosedShare = 0.8, kClosed = 2.0;
 // A ring of walls has no more bare outline than this; quadrilaterals are judged by their pairs.
 constexpr double kMaxBareRing = 0.25;
 
@@ -121,16 +123,46 @@ bool classify(const std::vector<Side>& sides, const RoomsConfig& config, RoomSha
   return true;
 }
 
-bool isSeenEnough(const RoomOutline& outline, const RoomShape& shape, const std::vector<Side>& sides,
-                  const RoomsConfig& config) {
+// A ring of walls tells a room's shape even if much of its floor was not seen. Where no wall closes it, its
+// end is taken from what was seen; only corridors may grow.
+double maxFrontierShare(const RoomShape& shape, double walled_share, bool is_corridor,
+                        const RoomsConfig& config) {
+  if (shape.kind == RoomKind::kInfinite) return (is_corridor ? 1.0 : 0.5) * config.max_frontier_share;
+  return (walled_share > kClosedShare ? kClosed : 1.0) * config.max_frontier_share;
+}
+
+double walledShare(const std::vector<Side>& sides) {
   double walled = 0, length = 0;
   for (const Side& side : sides) {
     length += side.length();
     walled += side.walled_m;
   }
-  return shape.area_m2 >= config.min_area_m2 && walled >= config.min_wall_share * length &&
+  return walled / length;
+}
+
+bool isSeenEnough(const RoomOutline& outline, const RoomShape& shape, double walled_share,
+                  const RoomsConfig& config) {
+  return shape.area_m2 >= config.min_area_m2 && walled_share >= config.min_wall_share &&
          outline.covered_m2 >= kMinCovered * shape.area_m2 &&
          outline.covered_m2 >= kMinIncluded * (outline.covered_m2 + outline.left_out_m2);
+}
+
+std::optional<RoomShape> shapeAmong(const BorderEvidence& evidence, const FreeSpaceCluster& cluster,
+                                    const ClusterBorder& border, const RoomsConfig& config) {
+  const RoomOutline outline = outlineOf(border, evidence, config.boundary_cost_m);
+  if (outline.corners.size() < 3) return {};
+  RoomShape shape;
+  const std::vector<Side> sides = sidesOf(outline, evidence.lines);
+  for (const Side& side : sides) {
+    shape.polygon.push_back(side.a);
+    shape.corners.push_back({side.a, side.wall ? side.wall->id : PlaneId{}});
+  }
+  shape.area_m2 = polygonArea(shape.polygon);
+  shape.free_center_map = polygonCentroid(border.polygon);
+  const double walled_share = walledShare(sides);
+  if (!isSeenEnough(outline, shape, walled_share, config) || !classify(sides, config, shape)) return {};
+  if (border.frontierShare() > maxFrontierShare(shape, walled_share, cluster.is_corridor, config)) return {};
+  return shape;
 }
 
 }  // namespace
@@ -159,25 +191,16 @@ Eigen::Vector2d intersection(const MidPlane& a, const MidPlane& b) {
 std::optional<RoomShape> roomShapeOf(const FreeSpaceCluster& cluster, const std::vector<Wall>& walls,
                                      const RoomsConfig& config) {
   const ClusterBorder border = borderOf(cluster);
-  if (border.edges.empty() || border.frontierShare() > config.max_frontier_share) return {};
-  const BorderEvidence evidence = evidenceOf(border, walls, config.furniture_depth_m);
-  const RoomOutline outline = outlineOf(border, evidence, config.boundary_cost_m);
-  if (outline.corners.size() < 3) return {};
-
-  RoomShape shape;
-  const std::vector<Side> sides = sidesOf(outline, evidence.lines);
-  for (const Side& side : sides) {
-    shape.polygon.push_back(side.a);
-    shape.corners.push_back({side.a, side.wall ? side.wall->id : PlaneId{}});
-  }
-  shape.area_m2 = polygonArea(shape.polygon);
-  shape.free_center_map = polygonCentroid(border.polygon);
-  if (!isSeenEnough(outline, shape, sides, config) || !classify(sides, config, shape)) return {};
-  // Where no wall closes a room, less may be unseen: its end is taken from there. Corridors grow.
-  if (shape.kind == RoomKind::kInfinite && !cluster.is_corridor &&
-      border.frontierShare() > 0.5 * config.max_frontier_share)
-    return {};
-  return shape;
+  if (border.edges.empty() || border.frontierShare() > kClosed * config.max_frontier_share) return {};
+  BorderEvidence evidence = evidenceOf(border, walls, config.furniture_depth_m);
+  if (evidence.num_seen == evidence.lines.size()) return shapeAmong(evidence, cluster, border, config);
+  // Where its walls close a room, it does not end where sight did.
+  const std::vector<OutlineLine> all = evidence.lines;
+  evidence.lines.resize(evidence.num_seen);
+  const std::optional<RoomShape> closed = shapeAmong(evidence, cluster, border, config);
+  if (closed && closed->kind != RoomKind::kInfinite) return closed;
+  evidence.lines = all;
+  return shapeAmong(evidence, cluster, border, config);
 }
 
 }  // namespace sgraphs

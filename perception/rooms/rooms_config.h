@@ -29,7 +29,8 @@ struct RoomsConfig {
     v.field("min_area_m2", min_area_m2, 0.1, 100.0, "Smaller rooms are none: a closet is one");
     v.field("min_width_m", min_width_m, 0.1, 10.0, "Opposed walls of a room are so far apart");
     v.field("max_frontier_share", max_frontier_share, 0.0, 1.0,
-            "Share of the border that nobody has looked behind, at most");
+            "Share of the border that nobody has looked behind, at most; half of it in rooms open at an end, "
+            "twice in closed ones");
     v.field("min_wall_share", min_wall_share, 0.0, 1.0, "Share of the outline with a wall, at least");
     v.field("opposed_rad", opposed_rad, 0.001, 0.7, "Opposed walls are parallel to within this");
     v.field("stable_rounds", stable_rounds, 1, 1000, "Rounds in a row in which a new room must look alike");

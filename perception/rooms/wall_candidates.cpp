@@ -107,7 +107,7 @@ StoreyBand bandAbove(double surface_z_m) {
 BorderEvidence evidenceOf(const ClusterBorder& border, const std::vector<Wall>& walls,
                           double furniture_depth_m) {
   std::vector<double> support(walls.size(), 0.0);
-  std::vector<BorderEdge> bare;
+  std::vector<BorderEdge> bare, frontier;
   BorderEvidence evidence;
   for (const BorderEdge& edge : border.edges) {
     double unexplained_m = 0;
@@ -132,13 +132,16 @@ BorderEvidence evidenceOf(const ClusterBorder& border, const std::vector<Wall>& 
       evidence.furniture.push_back(
           {piece.edge.a, piece.edge.a - da * n, piece.edge.b - db * n, piece.edge.b});
     }
-    if (unexplained_m > 0.5 * edge.length() && edge.length() > kMinBare_m) bare.push_back(edge);
+    if (unexplained_m > 0.5 * edge.length() && edge.length() > kMinBare_m)
+      (edge.kind == BorderKind::kFrontier ? frontier : bare).push_back(edge);
   }
   std::vector<Wall> candidates;
   for (size_t i = 0; i < walls.size(); ++i)
     if (support[i] >= kMinSupport_m) candidates.push_back(walls[i]);
   evidence.lines = joinedLines(std::move(candidates));
   addBareLines(std::move(bare), evidence.lines);
+  evidence.num_seen = evidence.lines.size();
+  addBareLines(std::move(frontier), evidence.lines);
   return evidence;
 }
 

@@ -19,6 +19,7 @@ struct OutlineLine {
 // What a cluster's border says of walls.
 struct BorderEvidence {
   std::vector<OutlineLine> lines;  // the longest walls first, then border that no wall explains
+  size_t num_seen = 0;             // lines before those along border that nobody has looked behind
   // Space between the border and the walls behind it, where furniture stands: convex.
   std::vector<Polygon2d> furniture;
 };

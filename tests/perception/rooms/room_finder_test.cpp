@@ -277,6 +277,41 @@ TEST(RoomFinderTest, CornerThatNobodySawIsClosedByItsWalls) {
   EXPECT_NEAR(rooms.rooms[0].area_m2, 20.0, 1e-6);
 }
 
+// Racks hide a corner of a hall, a quarter of its border: enough if its walls are known, too much if one is
+// not.
+TEST(RoomFinderTest, MoreMayBeUnseenInAClosedRoomThanInAnOpenOne) {
+  for (const bool closed : {true, false}) {
+    FreeSpace free_space;
+    setClusters(free_space, {clusterOf(0, {{0.1, 0.1}, {19.9, 0.1}, {19.9, 5.0}, {6.0, 9.9}, {0.1, 9.9}},
+                                       {BorderKind::kObstacle, BorderKind::kObstacle, BorderKind::kFrontier,
+                                        BorderKind::kObstacle, BorderKind::kObstacle})});
+    MapUpdate update;
+    update.keyframes = {keyframeAt(0, {1, 1})};
+    addWalls(update, rectangle(0, 0, 20, 10), 0);
+    if (!closed) update.planes.erase(update.planes.begin() + 3);
+    RoomFinder finder(RoomsConfig{});
+    finder.step(free_space, update);
+    const Rooms rooms = finder.step(free_space, idleRound(1));
+    ASSERT_EQ(rooms.rooms.size(), closed ? 1u : 0u);
+    if (closed) {
+      EXPECT_NEAR(rooms.rooms[0].area_m2, 200.0, 1e-3);
+    }
+  }
+}
+
+TEST(RoomFinderTest, TurnedByAnyAngleTheRoomsAreTheSame) {
+  const Rooms straight = settled(worldOf("small_office", {}));
+  for (const double heading : {M_PI / 6, M_PI / 4, M_PI / 2}) {
+    const Rooms turned = settled(worldOf("small_office", {.heading_rad = heading}));
+    ASSERT_EQ(turned.rooms.size(), straight.rooms.size());
+    for (size_t i = 0; i < turned.rooms.size(); ++i) {
+      EXPECT_EQ(turned.rooms[i].kind, straight.rooms[i].kind);
+      EXPECT_EQ(turned.rooms[i].walls(), straight.rooms[i].walls());
+      EXPECT_NEAR(turned.rooms[i].area_m2, straight.rooms[i].area_m2, 0.01 * straight.rooms[i].area_m2);
+    }
+  }
+}
+
 TEST(RoomFinderTest, WallOfTheNextRoomIsNoneOfThisOne) {
   // A shaft of 0.5 m behind the right wall: its far wall faces the same way.
   const PlanWorld world = worldOf(sceneOf({rectangle(0, 0, 4, 4), rectangle(4.1, 0, 4.6, 4)}), {});
