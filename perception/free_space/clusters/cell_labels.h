@@ -30,11 +30,12 @@ struct Cut {
   double width() const { return (right - left).norm(); }
 };
 
+// Grids have less than 2^32 cells.
 inline int cellX(const StoreyGrid& grid, size_t index) {
-  return static_cast<int>(index % static_cast<size_t>(grid.width));
+  return static_cast<int>(static_cast<uint32_t>(index) % static_cast<uint32_t>(grid.width));
 }
 inline int cellY(const StoreyGrid& grid, size_t index) {
-  return static_cast<int>(index / static_cast<size_t>(grid.width));
+  return static_cast<int>(static_cast<uint32_t>(index) / static_cast<uint32_t>(grid.width));
 }
 inline Eigen::Vector2d centerOf(const StoreyGrid& grid, size_t index) {
   return grid.center(cellX(grid, index), cellY(grid, index));

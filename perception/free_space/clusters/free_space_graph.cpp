@@ -49,13 +49,46 @@ std::vector<typename Map::mapped_type> takeStorey(Map& map, FloorId floor) {
   return taken;
 }
 
+// The part of a grid that holds all cells which are free in `like`, with a cell more on each side.
+StoreyGrid cropped(const StoreyGrid& grid, const StoreyGrid& like) {
+  int x0 = like.width, x1 = -1, y0 = like.height, y1 = -1;
+  for (int y = 0; y < like.height; ++y)
+    for (int x = 0; x < like.width; ++x) {
+      if (like.state[like.index(x, y)] != CellState::kFree) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = y;
+    }
+  StoreyGrid part;
+  part.floor = grid.floor;
+  part.cell_m = grid.cell_m;
+  part.surface_z_m = grid.surface_z_m;
+  part.origin_map = grid.origin_map;
+  if (x1 < 0) return part;
+  x0 = std::max(0, x0 - 1);
+  y0 = std::max(0, y0 - 1);
+  part.width = std::min(grid.width - 1, x1 + 1) - x0 + 1;
+  part.height = std::min(grid.height - 1, y1 + 1) - y0 + 1;
+  part.origin_map += grid.cell_m * Eigen::Vector2d(x0, y0);
+  for (int y = y0; y < y0 + part.height; ++y) {
+    const auto begin = static_cast<std::ptrdiff_t>(grid.index(x0, y));
+    part.state.insert(part.state.end(), grid.state.begin() + begin, grid.state.begin() + begin + part.width);
+    part.clearance_m.insert(part.clearance_m.end(), grid.clearance_m.begin() + begin,
+                            grid.clearance_m.begin() + begin + part.width);
+  }
+  return part;
+}
+
 Eigen::Vector2d middleOf(const Passage& passage) {
   return 0.5 * (passage.left_map + passage.right_map).cast<double>();
 }
 
 }  // namespace
 
-void FreeSpaceGraph::update(const StoreyGrid& rooms, const StoreyGrid& navigation) {
+void FreeSpaceGraph::update(const StoreyGrid& all_rooms, const StoreyGrid& all_navigation) {
+  // Grids have wide margins: half of their cells, often.
+  const StoreyGrid rooms = cropped(all_rooms, all_rooms), navigation = cropped(all_navigation, all_rooms);
   Storey& storey = storeys_[rooms.floor];
   const Segmentation segmentation = segment(rooms, config_, storey.cuts);
   const std::vector<ClusterId> ids = storey.identity.identify(rooms, segmentation.regions, &next_cluster_);

@@ -29,14 +29,19 @@ std::array<bool, 256> makeSimple() {
 
 class Thinning {
  public:
-  Thinning(const StoreyGrid& grid, double min_clearance_m) : grid_(grid), level_(levels(min_clearance_m)) {}
+  Thinning(const StoreyGrid& grid, double min_clearance_m)
+      : grid_(grid), edge_m_(min_clearance_m + 1.5 * grid.cell_m) {
+    for (size_t k = 0; k < 8; ++k)
+      offsets_[k] = kRound[k].y * static_cast<std::ptrdiff_t>(grid.width) + kRound[k].x;
+    level_ = levels(min_clearance_m);
+  }
 
   std::vector<uint32_t> run() {
     std::vector<std::vector<uint32_t>> buckets;
     for (size_t i = 0; i < level_.size(); ++i) {
       if (level_[i] == 0) continue;
       if (level_[i] >= buckets.size()) buckets.resize(level_[i] + 1U);
-      if (onEdge(i)) buckets[level_[i]].push_back(static_cast<uint32_t>(i));
+      if (grid_.clearance_m[i] < edge_m_ && onEdge(i)) buckets[level_[i]].push_back(static_cast<uint32_t>(i));
     }
     // From the edge inwards; a cell is looked at when something beside it went.
     for (size_t level = 1; level < buckets.size(); ++level)
@@ -61,12 +66,15 @@ class Thinning {
   std::vector<uint16_t> levels(double min_clearance_m) const {
     std::vector<uint16_t> level(grid_.state.size(), 0);
     const float top_m = *std::max_element(grid_.clearance_m.begin(), grid_.clearance_m.end()) - 1e-4F;
+    const double tenths = 10 / grid_.cell_m;
     std::vector<uint32_t> plateau;
-    for (size_t i = 0; i < level.size(); ++i) {
-      if (grid_.state[i] != CellState::kFree || grid_.clearance_m[i] < min_clearance_m) continue;
-      level[i] = static_cast<uint16_t>(1 + std::lround(10 * grid_.clearance_m[i] / grid_.cell_m));
-      if (grid_.clearance_m[i] >= top_m) plateau.push_back(static_cast<uint32_t>(i));
-    }
+    for (int y = 1; y + 1 < grid_.height; ++y)
+      for (int x = 1; x + 1 < grid_.width; ++x) {
+        const size_t i = grid_.index(x, y);
+        if (grid_.state[i] != CellState::kFree || grid_.clearance_m[i] < min_clearance_m) continue;
+        level[i] = static_cast<uint16_t>(1.5 + grid_.clearance_m[i] * tenths);
+        if (grid_.clearance_m[i] >= top_m) plateau.push_back(static_cast<uint32_t>(i));
+      }
     raisePlateau(plateau, level);
     return level;
   }
@@ -97,19 +105,17 @@ class Thinning {
     }
   }
 
+  // Cells at the grid's edge have level 0 always: all others have eight neighbours.
   template <typename F>
   void forEachNeighbour(size_t cell, F f) const {
-    const int x = cellX(grid_, cell), y = cellY(grid_, cell);
-    for (const CellStep& step : kRound)
-      if (grid_.contains(x + step.x, y + step.y)) f(grid_.index(x + step.x, y + step.y));
+    for (const std::ptrdiff_t offset : offsets_)
+      f(static_cast<size_t>(static_cast<std::ptrdiff_t>(cell) + offset));
   }
 
   unsigned pattern(size_t cell) const {
-    const int x = cellX(grid_, cell), y = cellY(grid_, cell);
     unsigned pattern = 0;
     for (unsigned k = 0; k < 8; ++k)
-      if (grid_.contains(x + kRound[k].x, y + kRound[k].y) &&
-          level_[grid_.index(x + kRound[k].x, y + kRound[k].y)] > 0)
+      if (level_[static_cast<size_t>(static_cast<std::ptrdiff_t>(cell) + offsets_[k])] > 0)
         pattern |= 1U << k;
     return pattern;
   }
@@ -147,6 +153,8 @@ class Thinning {
   }
 
   const StoreyGrid& grid_;
+  double edge_m_;                            // cells at the edge of what is looked at have less clearance
+  std::array<std::ptrdiff_t, 8> offsets_{};  // to the neighbours, as in kRound
   std::vector<uint16_t> level_;
 };
 

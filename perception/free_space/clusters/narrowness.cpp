@@ -129,6 +129,10 @@ void joinThroughParallelGaps(const StoreyGrid& grid, const FreeSpaceGraphConfig&
   // A join may lay gaps side by side that were not before.
   for (int round = 0; round < 4; ++round) {
     const std::vector<Contact> contacts = contactsOf(grid, regions.labels);
+    if (std::adjacent_find(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+          return std::tie(a.a, a.b) == std::tie(b.a, b.b);
+        }) == contacts.end())
+      return;
     const std::vector<double> widest = widestClearances(grid, regions);
     DisjointSets sets(regions.count);
     bool joined = false;

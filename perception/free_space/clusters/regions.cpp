@@ -106,6 +106,8 @@ void joinSmallRegions(const StoreyGrid& grid, double min_area_m2, Regions& regio
   std::vector<int> cells(n, 0);
   for (const int32_t label : regions.labels)
     if (label != kNoLabel) ++cells[static_cast<size_t>(label)];
+  const double min_cells = min_area_m2 / (grid.cell_m * grid.cell_m);
+  if (std::none_of(cells.begin(), cells.end(), [min_cells](int size) { return size < min_cells; })) return;
   // Clearance of the widest way between two regions.
   std::map<std::pair<int32_t, int32_t>, float> ways;
   forEachSide(grid, [&](size_t i, size_t j) {
@@ -114,7 +116,6 @@ void joinSmallRegions(const StoreyGrid& grid, double min_area_m2, Regions& regio
     float& way = ways.try_emplace({std::min(a, b), std::max(a, b)}, 0.0F).first->second;
     way = std::max(way, std::min(grid.clearance_m[i], grid.clearance_m[j]));
   });
-  const double min_cells = min_area_m2 / (grid.cell_m * grid.cell_m);
   DisjointSets sets(regions.count);
   std::vector<uint8_t> done(n, 0);
   while (true) {

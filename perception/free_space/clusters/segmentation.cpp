@@ -39,6 +39,26 @@ const Cut* cutAt(const StoreyGrid& grid, const Contact& contact, const std::vect
   return best;
 }
 
+// Small regions that no passage leads to are the inside of things. Nobody has been there.
+void dropPockets(const StoreyGrid& grid, double max_area_m2, Segmentation& segmentation) {
+  Regions& regions = segmentation.regions;
+  std::vector<double> area_m2(static_cast<size_t>(regions.count), 0);
+  for (const int32_t label : regions.labels)
+    if (label != kNoLabel) area_m2[static_cast<size_t>(label)] += grid.cell_m * grid.cell_m;
+  for (const RegionPassage& passage : segmentation.passages)
+    area_m2[static_cast<size_t>(passage.a)] = area_m2[static_cast<size_t>(passage.b)] = max_area_m2;
+  std::vector<int32_t> name(area_m2.size(), kNoLabel);
+  regions.count = 0;
+  for (size_t i = 0; i < name.size(); ++i)
+    if (area_m2[i] >= max_area_m2) name[i] = regions.count++;
+  for (int32_t& label : regions.labels)
+    if (label != kNoLabel) label = name[static_cast<size_t>(label)];
+  for (RegionPassage& passage : segmentation.passages) {
+    passage.a = name[static_cast<size_t>(passage.a)];
+    passage.b = name[static_cast<size_t>(passage.b)];
+  }
+}
+
 }  // namespace
 
 Segmentation segment(const StoreyGrid& rooms, const FreeSpaceGraphConfig& config,
@@ -63,6 +83,7 @@ Segmentation segment(const StoreyGrid& rooms, const FreeSpaceGraphConfig& config
     if (cut && cut->width() >= config.min_passage_m)
       result.passages.push_back({contact.a, contact.b, turned(rooms, regions.labels, contact, *cut)});
   }
+  dropPockets(rooms, 3 * config.min_cluster_m2, result);
   return result;
 }
 
