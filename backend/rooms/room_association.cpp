@@ -31,6 +31,8 @@ std::optional<std::vector<std::pair<PlaneId, PlaneId>>> wallsOfSameRoom(
     const RoomObservation& a, const RoomObservation& b, const std::map<PlaneId, PlaneNode>& planes,
     double max_apart_m) {
   if (a.floor != b.floor || a.kind != b.kind || a.kind == RoomKind::kInfinite) return std::nullopt;
+  const double apart_m = (a.center_map - b.center_map).norm();
+  if (apart_m > max_apart_m) return std::nullopt;
   const std::vector<PlaneId> walls_a = makers(a), walls_b = makers(b);
   if (walls_a.size() != walls_b.size() || walls_a.size() < kLeastWalls) return std::nullopt;
   std::vector<std::pair<PlaneId, PlaneId>> matches;
@@ -49,8 +51,7 @@ std::optional<std::vector<std::pair<PlaneId, PlaneId>>> wallsOfSameRoom(
     taken.insert(*same);
     matches.emplace_back(id_a, *same);
   }
-  const double apart_m = (a.center_map - b.center_map).norm();
-  if (apart_m > std::min(max_apart_m, kLeastWidthShare * 2 * reach)) return std::nullopt;
+  if (apart_m > kLeastWidthShare * 2 * reach) return std::nullopt;
   return matches;
 }
 

@@ -7,7 +7,7 @@
 namespace sgraphs::testing_support {
 namespace {
 
-constexpr double kHeight_m = 2.6, kBody_m = 0.6;
+constexpr double kHeight_m = 2.6, kBody_m = 0.6, kReach_m = 5;
 
 std::vector<Face> facesOf(const WorldRoom& room) {
   std::vector<Face> faces;
@@ -35,6 +35,7 @@ PlaneId nearestPlane(const SituationalGraph& graph, const Eigen::Vector3d& norma
   for (const auto& [id, plane] : graph.planes) {
     const double distance = std::abs(plane.distance(centre_map));
     if (plane.normal_map.dot(normal_map) < 0.98 || distance > least) continue;
+    if ((plane.centroid_map - centre_map).norm() > kReach_m) continue;
     least = distance;
     best = id;
   }
