@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "backend/graph/map_plane.h"
 #include "lcmtypes/convert/chunks.h"
 #include "lcmtypes/convert/convert.h"
 
@@ -38,19 +39,6 @@ graph_node_t toMessage(const RoomNode& node) {
   m.T_map_node =
       toMessage(SE3(Eigen::Quaterniond::Identity(), {node.center_map.x(), node.center_map.y(), 0}));
   return m;
-}
-
-MapPlane mapPlane(const PlaneNode& node) {
-  MapPlane plane;
-  plane.id = node.id;
-  plane.floor = node.floor;
-  plane.label = node.label;
-  plane.normal_map = node.normal_map;
-  plane.d = node.d();
-  plane.centroid_map = node.centroid_map - node.distance(node.centroid_map) * node.normal_map;
-  plane.covariance = node.covariance;
-  for (const Eigen::Vector3d& corner : node.polygon_map) plane.polygon_map.push_back(corner.cast<float>());
-  return plane;
 }
 
 // Merges follow one another: the plane that stands at their end.

@@ -8,6 +8,7 @@
 #include "backend/output/floor_plan.h"
 #include "backend/output/graph_files.h"
 #include "backend/output/map_cloud.h"
+#include "backend/output/moved_away.h"
 #include "backend/output/occupancy_grid.h"
 #include "backend/output/summary_json.h"
 #include "common/io/ply.h"
@@ -53,7 +54,8 @@ void writeOutputs(const RunRecord& record, const std::string& out_dir) {
   writeTum(out_dir + "/keyframes.tum", keyframeTrajectory(graph));
   writeTum(out_dir + "/odometry.tum", odometryTrajectory(record.scans));
 
-  const std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
+  std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
+  dropWhatMovedAway(graph, map);
   const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);
   writeMap(map, out_dir + "/map.ply");
   writeFile(out_dir + "/graph.json", graphJson(graph, floors, record.keyframe_covariances));

@@ -1,0 +1,93 @@
+#include "backend/output/moved_away.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace sgraphs {
+namespace {
+
+constexpr double kBody_m = 0.5;  // over the floor, which is at z = -0.5
+
+// A room of 6 x 6 m around the origin, seen from a body at (x, 0); the LiDAR is 0.3 m above it. `visitor`:
+// somebody stands at (1.5, 1), wide as a person. `lamp`: a post of 5 cm at (-1.5, 1).
+std::shared_ptr<const Keyframe> viewFrom(int64_t id, double x, bool visitor) {
+  auto keyframe = std::make_shared<Keyframe>();
+  keyframe->id = {id};
+  keyframe->time = Time{1'000'000 * (id + 1)};
+  keyframe->T_keyframe_body = {SE3()};
+  keyframe->T_body_lidar = SE3(Eigen::Quaterniond::Identity(), {0, 0, 0.3});
+  const auto add = [&](double px, double py, double height) {
+    keyframe->points.push_back(
+        {{static_cast<float>(px - x), static_cast<float>(py), static_cast<float>(height - kBody_m)}, 0, 1});
+  };
+  for (double along = -3; along < 3; along += 0.05) {
+    for (double height = 0.05; height < 2; height += 0.05) {
+      add(along, 3, height);
+      add(along, -3, height);
+      add(3, along, height);
+      add(-3, along, height);
+    }
+    for (double y = -3; y < 3; y += 0.05) add(along, y, 0);
+  }
+  for (double height = 0.2; height < 1.8; height += 0.05) {
+    for (double angle = 0; visitor && angle < 2 * M_PI; angle += 0.2)
+      add(1.5 + 0.2 * std::cos(angle), 1 + 0.2 * std::sin(angle), height);
+    add(-1.5, 1, height);
+  }
+  return keyframe;
+}
+
+SituationalGraph roomSeenBy(int keyframes, int visits) {
+  SituationalGraph graph;
+  graph.floors[{0}].id = {0};
+  for (int64_t id = 0; id < keyframes; ++id) {
+    KeyframeNode node;
+    node.id = {id};
+    node.floor = {0};
+    const double x = 0.3 * static_cast<double>(id) - 1;
+    node.T_map_body.translation = {x, 0, 0};
+    node.keyframe = viewFrom(id, x, id < visits);
+    node.time = node.keyframe->time;
+    graph.keyframes[node.id] = node;
+  }
+  return graph;
+}
+
+size_t countNear(const std::vector<MapPoint>& map, const Eigen::Vector2f& place) {
+  size_t count = 0;
+  for (const MapPoint& p : map)
+    count += (p.position_map.head<2>() - place).norm() < 0.3F && p.position_map.z() > -0.35F;
+  return count;
+}
+
+TEST(MovedAwayTest, WhoStoodThereOnceIsGoneAndWhatStandsStays) {
+  const SituationalGraph graph = roomSeenBy(8, 1);
+  std::vector<MapPoint> map = buildMap(graph, 0.05);
+  const size_t visitor = countNear(map, {1.5F, 1}), post = countNear(map, {-1.5F, 1}), all = map.size();
+  ASSERT_GT(visitor, 500u);
+  ASSERT_GT(post, 25u);
+  dropWhatMovedAway(graph, map);
+  EXPECT_LT(countNear(map, {1.5F, 1}), visitor / 20);
+  EXPECT_EQ(countNear(map, {-1.5F, 1}), post) << "thin, but there every time";
+  EXPECT_GT(map.size(), all - visitor - all / 200) << "walls and floor stay";
+}
+
+TEST(MovedAwayTest, WhoStoodThereMostOfTheTimeStays) {
+  const SituationalGraph graph = roomSeenBy(8, 5);
+  std::vector<MapPoint> map = buildMap(graph, 0.05);
+  const size_t visitor = countNear(map, {1.5F, 1});
+  dropWhatMovedAway(graph, map);
+  EXPECT_GT(countNear(map, {1.5F, 1}), 9 * visitor / 10);
+}
+
+TEST(MovedAwayTest, TwoLooksAreNotEnoughToCallSomethingGone) {
+  const SituationalGraph graph = roomSeenBy(3, 1);
+  std::vector<MapPoint> map = buildMap(graph, 0.05);
+  const size_t visitor = countNear(map, {1.5F, 1});
+  dropWhatMovedAway(graph, map);
+  EXPECT_EQ(countNear(map, {1.5F, 1}), visitor);
+}
+
+}  // namespace
+}  // namespace sgraphs
