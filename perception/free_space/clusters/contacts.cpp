@@ -1,6 +1,7 @@
 #include "perception/free_space/clusters/contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -82,18 +83,23 @@ std::vector<Eigen::Vector2d> edgeCells(const StoreyGrid& grid, const Eigen::Vect
   return cells;
 }
 
-// A jamb's face: the mean of the cells that stand out as far as the one that stands out most, to a cell. A
+// A jamb's face: the mean, over the lines of cells beside it, of the cell that stands out most in each. A
 // grid's single nearest cell would make every door narrower by its noise.
 Eigen::Vector2d faceOf(const std::vector<Eigen::Vector2d>& cells, const Eigen::Vector2d& jamb,
                        const Eigen::Vector2d& outward, double cell_m) {
+  std::array<std::optional<double>, 3> depth_m;  // outward, by line
+  for (const Eigen::Vector2d& cell : cells) {
+    const double line = std::round(cross(outward, cell - jamb) / cell_m);
+    const double d_m = outward.dot(cell - jamb);
+    if (std::abs(line) > 1 || std::abs(d_m) > 1.01 * cell_m) continue;
+    auto& nearest_m = depth_m[static_cast<size_t>(line + 1)];
+    nearest_m = std::min(nearest_m.value_or(d_m), d_m);
+  }
   double sum_m = 0;
   int n = 0;
-  for (const Eigen::Vector2d& cell : cells) {
-    const Eigen::Vector2d offset = cell - jamb;
-    const double depth_m = offset.dot(outward);
-    if (std::abs(depth_m) > 1.01 * cell_m || std::abs(cross(outward, offset)) > 1.5 * cell_m) continue;
-    sum_m += depth_m;
-    ++n;
+  for (const auto& d_m : depth_m) {
+    sum_m += d_m.value_or(0);
+    n += d_m ? 1 : 0;
   }
   return n > 0 ? Eigen::Vector2d(jamb + sum_m / n * outward) : jamb;
 }

@@ -35,8 +35,8 @@ struct Arm {
 };
 
 // Pieces of a loop that are walls, in turn: first and last corner, modulo the loop's size.
-std::vector<std::pair<size_t, size_t>> wallsOf(const CellLoop& loop, double cell_m) {
-  const std::vector<size_t> stay = simplifiedLoop(loop, {}, 2.2 * cell_m);
+std::vector<std::pair<size_t, size_t>> wallsOf(const CellLoop& loop, double tolerance_m) {
+  const std::vector<size_t> stay = simplifiedLoop(loop, {}, tolerance_m);
   std::vector<std::pair<size_t, size_t>> walls;
   for (size_t k = 0; k < stay.size(); ++k) {
     const size_t end = k + 1 < stay.size() ? stay[k + 1] : stay[0] + loop.corners.size();
@@ -45,8 +45,9 @@ std::vector<std::pair<size_t, size_t>> wallsOf(const CellLoop& loop, double cell
   return walls;
 }
 
-void addCandidates(const CellLoop& loop, double cell_m, std::vector<Candidate>& candidates) {
-  const auto walls = wallsOf(loop, cell_m);
+void addCandidates(const CellLoop& loop, double cell_m, double tolerance_m,
+                   std::vector<Candidate>& candidates) {
+  const auto walls = wallsOf(loop, tolerance_m);
   const auto at = [&loop](size_t i) -> const Eigen::Vector2d& {
     return loop.corners[i % loop.corners.size()];
   };
@@ -65,6 +66,10 @@ void addCandidates(const CellLoop& loop, double cell_m, std::vector<Candidate>& 
     const Eigen::Vector2d corner =
         in.point + cross(out.point - in.point, out.direction) / turn * in.direction;
     if ((corner - 0.5 * (first + last)).norm() > kMaxCorner_m) continue;
+    const bool is_known = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+      return (other.corner - corner).norm() < kMaxCorner_m && other.along.dot(in.direction) > 0.98;
+    });
+    if (is_known) continue;
     candidates.push_back({loop.label, corner, in.direction, out.direction});
     candidates.push_back({loop.label, corner, -out.direction, -in.direction});
   }
@@ -180,7 +185,9 @@ std::vector<Candidate> candidatesOf(const StoreyGrid& grid, const Regions& regio
     // What stands free in a room is furniture; the core of a ring is larger than the ring.
     const double size_m2 = area_m2[static_cast<size_t>(loop.label)];
     if (loop.area_m2 < 0 && -loop.area_m2 < 0.5 * size_m2) continue;
-    addCandidates(loop, grid.cell_m, candidates);
+    // What noise breaks into pieces at one tolerance is straight at another.
+    for (const double tolerance : {2.2, 3.3})
+      addCandidates(loop, grid.cell_m, tolerance * grid.cell_m, candidates);
   }
   return candidates;
 }

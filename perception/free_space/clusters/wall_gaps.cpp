@@ -83,6 +83,13 @@ std::vector<Cut> cutWallGaps(const StoreyGrid& grid, const FreeSpaceGraphConfig&
   for (size_t i = 0; i < ends.size(); ++i)
     for (size_t j = i + 1; j < ends.size(); ++j)
       if (face(ends[i], ends[j], config.max_passage_m)) gaps.emplace_back(ends[i], ends[j]);
+  // Where a cut was, it is looked at again, whatever has become of the walls beside it.
+  for (const Cut& old : former) {
+    const int32_t label = labelAt(grid, regions.labels, old.middle());
+    if (!old.narrows || label == kNoLabel) continue;
+    const Eigen::Vector2d along = (old.right - old.left).normalized();
+    gaps.push_back({{label, old.left, along}, {label, old.right, -along}});
+  }
   const auto width = [](const auto& gap) { return (gap.second.corner - gap.first.corner).norm(); };
   std::stable_sort(gaps.begin(), gaps.end(),
                    [&width](const auto& a, const auto& b) { return width(a) < width(b); });

@@ -183,6 +183,39 @@ TEST(SegmentationTest, ShelvesThatStandFreeDoNotCutARoom) {
   }
 }
 
+// Two rooms of 4 x 4 m with an opening of so many cells between them.
+StoreyGrid roomsWithOpening(int cells) {
+  std::vector<std::string> rows(42, '#' + std::string(40, '.') + '#' + std::string(40, '.') + '#');
+  rows.front() = rows.back() = std::string(83, '#');
+  for (int k = 0; k < cells; ++k) rows[static_cast<size_t>(21 - cells / 2 + k)][41] = '.';
+  return gridOf(rows);
+}
+
+TEST(SegmentationTest, WhatWasCutStaysCutUntilItIsClearlyWide) {
+  const FreeSpaceGraphConfig config;
+  std::vector<Cut> former;
+  const auto regionsAt = [&](int cells) {
+    const Segmentation found = segment(roomsWithOpening(cells), config, former);
+    former.clear();
+    for (const RegionPassage& passage : found.passages) former.push_back(passage.cut);
+    return found.regions.count;
+  };
+  EXPECT_EQ(regionsAt(33), 1);  // 0.83 of the rooms' width
+  EXPECT_EQ(regionsAt(28), 2);
+  EXPECT_EQ(regionsAt(33), 2);
+  EXPECT_EQ(regionsAt(36), 1);
+  EXPECT_EQ(regionsAt(33), 1);
+}
+
+TEST(SegmentationTest, TheInsideOfAClosedBoxIsNoRegion) {
+  std::vector<std::string> rows(50, '#' + std::string(60, '.') + '#');
+  rows.front() = rows.back() = std::string(62, '#');
+  for (size_t k = 0; k < 14; ++k) rows[20 + k].replace(20, 14, "#............#");
+  rows[20].replace(20, 14, std::string(14, '#'));
+  rows[33].replace(20, 14, std::string(14, '#'));
+  EXPECT_EQ(segment(gridOf(rows), FreeSpaceGraphConfig{}, {}).regions.count, 1);
+}
+
 TEST(SegmentationTest, NothingKnownHasNoRegions) {
   StoreyGrid grid = gridOf({"    ", "    "}, 5);
   const Segmentation found = segment(grid, FreeSpaceGraphConfig{}, {});
