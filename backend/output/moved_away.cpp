@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kMinPasses = 3;
 constexpr int kPassesPerHit = 3;
+// Rays that leave the highest slice upwards pass walls that go on above it.
+constexpr int kNumSure = kNumSlices - 1;
 
 // What all keyframes say of free space, from where they stand now.
 FreeSpaceEvidence evidenceOf(const SituationalGraph& graph, const EvidenceConfig& config) {
@@ -31,7 +33,7 @@ FreeSpaceEvidence evidenceOf(const SituationalGraph& graph, const EvidenceConfig
 bool movedAway(const MapPoint& point, const StoreyMap& storey, double cell_m) {
   const double height_m = static_cast<double>(point.position_map.z()) - storey.surface_z_m();
   const int slice = static_cast<int>(std::floor((height_m - kLowestSlice_m) / kSlice_m));
-  if (slice < 0 || slice >= kNumSlices) return false;
+  if (slice < 0 || slice >= kNumSure) return false;
   const auto cellOf = [cell_m](float p) {
     return static_cast<int>(std::floor(static_cast<double>(p) / cell_m));
   };

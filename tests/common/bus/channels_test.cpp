@@ -40,8 +40,12 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kRunResult, false);
   expectRow(kStatusOdometry, false);
   expectRow(kStatusPlanes, false);
+  expectRow(kFreeSpace, false);
+  expectRow(kRooms, false);
+  expectRow(kStatusFreeSpace, false);
+  expectRow(kStatusRooms, false);
   expectRow(kStatusBackend, false);
-  EXPECT_EQ(table().size(), 20u);
+  EXPECT_EQ(table().size(), 24u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {
