@@ -216,9 +216,9 @@ TEST(GraphPlanesTest, JsonAxesAreWhatTiltsTurnAbout) {
 TEST(GraphPlanesTest, JsonLinksKeyframesToWallsAndFacesToEachOther) {
   const SituationalGraph graph = disturbedRoom();
   const auto json = nlohmann::json::parse(graphJson(graph, graph.floors));
-  // Five of the planes are walls of the only storey.
+  // Four of the planes are walls of the only storey.
   constexpr size_t kFaces = 13 + 14 * 6;
-  ASSERT_EQ(json["links"].size(), kFaces + 1 + 5);
+  ASSERT_EQ(json["links"].size(), kFaces + 1 + 4);
   EXPECT_EQ(json["links"][13], nlohmann::json({{"source", "k0"}, {"target", "w0"}, {"kind", "observes"}}));
   EXPECT_EQ(json["links"][kFaces], nlohmann::json({{"source", "w0"}, {"target", "w1"}, {"kind", "faces"}}));
   for (size_t i = kFaces + 1; i < json["links"].size(); ++i) {
