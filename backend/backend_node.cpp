@@ -318,6 +318,7 @@ std::optional<Keyframe> BackendNode::joinedKeyframe(const OdometryEstimate* esti
 void BackendNode::runRound(RoundInput input, const RoundJoiner::Joined& joined) {
   const Time time = input.time;
   const bool idle = !input.keyframe;
+  const std::vector<map_chunk_t> map_chunks = idle ? std::vector<map_chunk_t>{} : mapChunks(*input.keyframe);
   if (mode_ == RoundJoiner::Mode::kLive) publishSchedule(input, joined);
   input.free_space = free_space_;
   input.rooms = std::exchange(rooms_, std::nullopt);
@@ -328,6 +329,7 @@ void BackendNode::runRound(RoundInput input, const RoundJoiner::Joined& joined) 
   const int64_t round = rounds_++;
   for (graph_update_t& m : updateMessages(core_.graph(), newest_round_, round, time, idle))
     publisher_.send(channels::kGraphUpdate, m);
+  for (map_chunk_t m : map_chunks) publisher_.send(channels::kMapChunk, m);
   map_to_odom_t map_to_odom{};
   map_to_odom.header.utime = time.us;
   map_to_odom.T_map_odom = toMessage(newest_round_.T_map_odom);

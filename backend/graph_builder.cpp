@@ -40,9 +40,9 @@ void turnNormal(PlaneNode& plane, const Eigen::Vector3d& normal_map) {
 }  // namespace
 
 int64_t GraphBuilder::add(const std::string& kind, std::unique_ptr<ceres::CostFunction> cost,
-                          std::vector<StateId> states, std::optional<double> cauchy_scale) {
+                          const std::vector<StateId>& states, std::optional<double> cauchy_scale) {
   const int64_t id = next_factor_++;
-  factors_[id] = {kind, solver_.addFactor(std::move(cost), std::move(states), cauchy_scale)};
+  factors_[id] = {kind, solver_.addFactor(std::move(cost), states, cauchy_scale)};
   return id;
 }
 

@@ -93,8 +93,8 @@ class GraphBuilder {
     std::string kind;
     IncrementalSolver::FactorId factor = -1;
   };
-  int64_t add(const std::string& kind, std::unique_ptr<ceres::CostFunction> cost, std::vector<StateId> states,
-              std::optional<double> cauchy_scale);
+  int64_t add(const std::string& kind, std::unique_ptr<ceres::CostFunction> cost,
+              const std::vector<StateId>& states, std::optional<double> cauchy_scale);
   StateId upState();
   StateId centerState(const CenterOf& of);
   void drop(int64_t factor);

@@ -24,6 +24,7 @@ constexpr std::array kTable{
     Row{"ROOMS", "rooms_t", "sgraphs-rooms", "per round, chunks", false},
     Row{"GRAPH_UPDATE", "graph_update_t", "sgraphs-backend", "per round", false},
     Row{"GRAPH_SNAPSHOT", "graph_update_t", "sgraphs-backend", "every 50 rounds", false},
+    Row{"MAP_CHUNK", "map_chunk_t", "sgraphs-backend", "per keyframe, chunks", false},
     Row{"MAP_TO_ODOM", "map_to_odom_t", "sgraphs-backend", "per round", false},
     Row{"POSE", "pose_t", "sgraphs-backend", "10 Hz", false},
     Row{"RUN_RESULT", "run_result_t", "sgraphs-backend", "once", false},

@@ -8,6 +8,7 @@
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
+#include "sgraphs/map_chunk_t.hpp"
 #include "sgraphs/map_to_odom_t.hpp"
 #include "sgraphs/odometry_t.hpp"
 #include "sgraphs/pose_t.hpp"
@@ -41,6 +42,7 @@ inline constexpr Channel<free_space_t> kFreeSpace{"FREE_SPACE"};
 inline constexpr Channel<rooms_t> kRooms{"ROOMS"};
 inline constexpr Channel<graph_update_t> kGraphUpdate{"GRAPH_UPDATE"};
 inline constexpr Channel<graph_update_t> kGraphSnapshot{"GRAPH_SNAPSHOT"};
+inline constexpr Channel<map_chunk_t> kMapChunk{"MAP_CHUNK"};
 inline constexpr Channel<map_to_odom_t> kMapToOdom{"MAP_TO_ODOM"};
 inline constexpr Channel<pose_t> kPose{"POSE"};
 inline constexpr Channel<run_result_t> kRunResult{"RUN_RESULT"};

@@ -13,6 +13,7 @@
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
+#include "sgraphs/map_chunk_t.hpp"
 #include "sgraphs/odometry_t.hpp"
 #include "sgraphs/pose_t.hpp"
 #include "sgraphs/session_t.hpp"
@@ -65,6 +66,12 @@ std::optional<LidarScan> fromMessages(std::span<const lidar_points_t> chunks);
 // m.
 std::vector<keyframe_t> toMessages(const Keyframe& keyframe);
 std::optional<Keyframe> fromMessages(std::span<const keyframe_t> chunks);
+
+// A keyframe's part of the metric map: the first point of each voxel of 0.1 m, quantised to 2 mm, or coarser
+// beyond 65 m. A keyframe without points gives one message without points.
+std::vector<map_chunk_t> mapChunks(const Keyframe& keyframe);
+// Points of one of them, in the keyframe's body [m].
+std::optional<std::vector<Eigen::Vector3f>> pointsOf(const map_chunk_t& message);
 
 // Most planes of a keyframe and corners of a boundary, so that the message stays one datagram.
 inline constexpr int kMaxPlanesPerKeyframe = 64;

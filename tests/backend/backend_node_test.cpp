@@ -123,9 +123,9 @@ TEST_F(BackendNodeTest, PoseUsesTheRoundOfTheNewestKeyframeAtOrBeforeItsScan) {
   play(odometryStream(7));
   ASSERT_EQ(poses.messages.size(), 7u);
   for (int s = 0; s < 7; ++s) {
+    const int round = s / 3;
     EXPECT_NEAR(poses.messages[s].pos[0], 0.1 * s, 1e-12);
-    EXPECT_DOUBLE_EQ(poses.messages[s].pos[2],
-                     1.0 + static_cast<double>(s / 3));  // the fake lifts by 1 + round
+    EXPECT_DOUBLE_EQ(poses.messages[s].pos[2], 1.0 + round);  // the fake lifts by 1 + round
   }
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "lcmtypes/convert/chunks.h"
+#include "lcmtypes/convert/convert.h"
 #include "tests/lcmtypes/through_bytes.h"
 
 namespace sgraphs {
@@ -217,6 +218,33 @@ TEST(ConvertMapUpdateTest, KeyframesAndPlanesOfAllChunksAreReadAndOtherLayersPas
   EXPECT_EQ(update->keyframes[0].T_map_body.translation.x(), 2);
   m.nodes[0].T_map_node.wxyz[0] = 2;
   EXPECT_FALSE(fromMessages(std::vector{m})) << "no unit quaternion";
+}
+
+TEST(ConvertMapChunkTest, EveryPlaceOfTheCloudIsThereOnceWithinTheVoxelAndDatagramsStaySmall) {
+  Keyframe keyframe;
+  keyframe.id = {5};
+  for (int i = 0; i < 100000; ++i)
+    keyframe.points.push_back(
+        {{0.02F * static_cast<float>(i % 1000), 0.3F * static_cast<float>(i / 1000), 1}, 0, 1});
+  size_t points = 0;
+  const auto chunks = test::throughBytes(mapChunks(keyframe));
+  EXPECT_EQ(chunks.size(), 3u) << "20,000 voxels, 8,000 points a message";
+  for (const map_chunk_t& m : chunks) {
+    EXPECT_LE(m.getEncodedSize(), kMaxRecordsBytes);
+    EXPECT_EQ(m.keyframe, 5);
+    const auto read = pointsOf(m);
+    ASSERT_TRUE(read);
+    points += read->size();
+    for (const Eigen::Vector3f& p : *read) {
+      ASSERT_NEAR(p.z(), 1, 1e-3);
+      const float nearest = 0.02F * std::round(p.x() / 0.02F);
+      ASSERT_NEAR(p.x(), nearest, 1.1e-3) << "points as they were, not averaged";
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(points), 20000, 300);
+  map_chunk_t bad = chunks[0];
+  bad.num_points = 1;
+  EXPECT_FALSE(pointsOf(bad));
 }
 
 }  // namespace

@@ -42,10 +42,11 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kStatusPlanes, false);
   expectRow(kFreeSpace, false);
   expectRow(kRooms, false);
+  expectRow(kMapChunk, false);
   expectRow(kStatusFreeSpace, false);
   expectRow(kStatusRooms, false);
   expectRow(kStatusBackend, false);
-  EXPECT_EQ(table().size(), 24u);
+  EXPECT_EQ(table().size(), 25u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {
