@@ -1,9 +1,10 @@
-// A simulated office through the whole chain and the evaluation: what the walls must be, whatever the start
-// heading.
+// A simulated office through the whole chain and the evaluation: what walls, rooms and storeys must be,
+// whatever the start heading.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -20,14 +21,14 @@ Json readJson(const fs::path& path) {
   return Json::parse(in);
 }
 
-class WallsTest : public ::testing::TestWithParam<int> {
+class LayersTest : public ::testing::TestWithParam<int> {
  protected:
-  WallsTest()
+  LayersTest()
       : folder_(fs::path(::testing::TempDir()) /
-                ("walls_test_" + std::to_string(GetParam()) + "_" + std::to_string(getpid()))) {
+                ("layers_test_" + std::to_string(GetParam()) + "_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
   }
-  ~WallsTest() override { fs::remove_all(folder_); }
+  ~LayersTest() override { fs::remove_all(folder_); }
 
   void run(const std::string& command) const {
     const fs::path said = folder_ / "said.txt";
@@ -43,7 +44,7 @@ class WallsTest : public ::testing::TestWithParam<int> {
   fs::path folder_;
 };
 
-TEST_P(WallsTest, EveryFaceSeenIsOneWallAndCovariancesAreTrue) {
+TEST_P(LayersTest, WallsRoomsAndDoorwaysAreThoseOfThePlanAndCovariancesAreTrue) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "minutes of walking take too long under a sanitizer; shorter runs cover the same code";
 #endif
@@ -64,6 +65,16 @@ TEST_P(WallsTest, EveryFaceSeenIsOneWallAndCovariancesAreTrue) {
   EXPECT_LT(walls["angle_rad"]["median"].get<double>(), 0.002);
   EXPECT_LT(walls["offset_m"]["median"].get<double>(), 0.003);
 
+  const Json& rooms = eval["rooms"];
+  EXPECT_EQ(rooms["asked"], 3);
+  EXPECT_EQ(rooms["recall"], 1.0);
+  EXPECT_EQ(rooms["precision"], 1.0);
+  EXPECT_GT(rooms["mean_iou"].get<double>(), 0.97);
+  EXPECT_EQ(eval["doorways"]["of_asked_rooms"]["recall"], 1.0);
+  EXPECT_EQ(eval["doorways"]["false"], 0);
+  EXPECT_EQ(eval["floors"]["recall"], 1.0);
+  EXPECT_LT(std::abs(eval["floors"]["storeys"][0]["height_error_m"].get<double>()), 0.01);
+
   // Right are 3 and 3; errors of one run are alike from keyframe to keyframe, so that its mean scatters.
   const Json& nees = eval["nees_of_estimates"];
   for (const char* part : {"pose_translation", "pose_rotation"}) {
@@ -77,11 +88,12 @@ TEST_P(WallsTest, EveryFaceSeenIsOneWallAndCovariancesAreTrue) {
 
   EXPECT_LT(eval["trajectories"]["trajectory.tum"]["ate_m"]["rmse"].get<double>(), 0.012);
   const Json summary = readJson(folder_ / "out" / "summary.json");
-  for (const char* kind : {"odometry", "observes", "plane_up"})
+  for (const char* kind : {"odometry", "observes", "plane_up", "room_wall", "room_shape", "floor_wall",
+                           "floor_room", "floor_height"})
     EXPECT_GT(summary["factors"][kind]["count"].get<int>(), 0) << kind;
 }
 
-INSTANTIATE_TEST_SUITE_P(StartHeading, WallsTest, testing::Values(0, 30, 45, 90),
+INSTANTIATE_TEST_SUITE_P(StartHeading, LayersTest, testing::Values(0, 30, 45, 90),
                          [](const auto& param_info) { return "Degrees" + std::to_string(param_info.param); });
 
 }  // namespace
