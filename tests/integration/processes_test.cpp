@@ -88,6 +88,8 @@ TEST_F(ProcessesTest, GiveTheDigestOfReplayAtAnySpeed) {
     EXPECT_EQ(codes, "0 0 0 0 0") << said;
     EXPECT_EQ(digestIn(said), expected) << said;
   }
+  EXPECT_NE(readAll(folder / "replay_1" / "graph.json").find("\"layer\":\"rooms\""), std::string::npos)
+      << "the walk is long enough for the room to be one";
   // The files of the processes are those of replay, byte for byte.
   for (const char* file :
        {"trajectory.tum", "keyframes.tum", "odometry.tum", "graph.json", "graph.g2o", "map.ply"})
