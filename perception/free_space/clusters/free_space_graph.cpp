@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "perception/free_space/clusters/axis_graph.h"
+#include "perception/free_space/clusters/passable.h"
 #include "perception/free_space/clusters/region_border.h"
 
 namespace sgraphs {
@@ -11,6 +12,8 @@ namespace {
 
 constexpr double kSamePassage_m = 0.8;  // two doors of one pair of rooms are farther apart
 constexpr double kSameVertex_m = 0.4;
+// A passage that was found in fewer calls was none, where it is found no more: a wall that was half seen.
+constexpr int kKnownPassage = 10;
 
 struct Match {
   double distance_m;
@@ -95,7 +98,7 @@ void FreeSpaceGraph::update(const StoreyGrid& all_rooms, const StoreyGrid& all_n
   storey.cuts.clear();
   for (const RegionPassage& passage : segmentation.passages) storey.cuts.push_back(passage.cut);
   updateClusters(rooms, segmentation, ids);
-  updatePassages(rooms, segmentation, ids);
+  updatePassages(rooms, navigation, segmentation, ids);
   updateVertices(rooms, navigation, segmentation, ids);
 }
 
@@ -124,8 +127,8 @@ void FreeSpaceGraph::updateClusters(const StoreyGrid& grid, const Segmentation& 
   }
 }
 
-void FreeSpaceGraph::updatePassages(const StoreyGrid& grid, const Segmentation& segmentation,
-                                    const std::vector<ClusterId>& ids) {
+void FreeSpaceGraph::updatePassages(const StoreyGrid& grid, const StoreyGrid& navigation,
+                                    const Segmentation& segmentation, const std::vector<ClusterId>& ids) {
   const std::vector<Passage> former = takeStorey(result_.passages, grid.floor);
   std::vector<Passage> found;
   for (const RegionPassage& region : segmentation.passages) {
@@ -140,9 +143,10 @@ void FreeSpaceGraph::updatePassages(const StoreyGrid& grid, const Segmentation& 
       std::swap(passage.a, passage.b);
       std::swap(passage.left_map, passage.right_map);
     }
-    // Between two corridors and without a narrowing, it is a bend or a branch.
-    passage.is_door = region.cut.narrows || !result_.clusters[passage.a].is_corridor ||
-                      !result_.clusters[passage.b].is_corridor;
+    // Between two corridors and without a narrowing, it is a bend or a branch; over a sill, a window.
+    passage.is_door = (region.cut.narrows || !result_.clusters[passage.a].is_corridor ||
+                       !result_.clusters[passage.b].is_corridor) &&
+                      isPassable(navigation, region.cut.left, region.cut.right);
     found.push_back(passage);
   }
   std::vector<Match> matches;
@@ -159,11 +163,13 @@ void FreeSpaceGraph::updatePassages(const StoreyGrid& grid, const Segmentation& 
     found[k].id = PassageId{it != former_of.end() ? it->second : next_passage_++};
     seen.insert(found[k].id.value);
     result_.passages[found[k].id] = found[k];
+    ++found_[found[k].id];
   }
   // Somebody stands in a doorway, or the door is closed: it is still one while both clusters live, unless its
   // place lies amid one of them now.
   for (const Passage& old : former) {
-    if (seen.count(old.id.value) || !result_.clusters.count(old.a) || !result_.clusters.count(old.b))
+    if (seen.count(old.id.value) || found_[old.id] < kKnownPassage || !result_.clusters.count(old.a) ||
+        !result_.clusters.count(old.b))
       continue;
     const Eigen::Vector2d along = (old.left_map - old.right_map).cast<double>().normalized();
     const Eigen::Vector2d across(-along.y(), along.x());
@@ -171,6 +177,7 @@ void FreeSpaceGraph::updatePassages(const StoreyGrid& grid, const Segmentation& 
     const int32_t other = labelAt(grid, segmentation.regions.labels, middleOf(old) - 0.4 * across);
     if (one == kNoLabel || one != other) result_.passages[old.id] = old;
   }
+  std::erase_if(found_, [this](const auto& item) { return !result_.passages.contains(item.first); });
 }
 
 void FreeSpaceGraph::updateVertices(const StoreyGrid& rooms, const StoreyGrid& navigation,

@@ -32,7 +32,7 @@ class FreeSpaceGraph {
 
   void updateClusters(const StoreyGrid& grid, const Segmentation& segmentation,
                       const std::vector<ClusterId>& ids);
-  void updatePassages(const StoreyGrid& grid, const Segmentation& segmentation,
+  void updatePassages(const StoreyGrid& grid, const StoreyGrid& navigation, const Segmentation& segmentation,
                       const std::vector<ClusterId>& ids);
   void updateVertices(const StoreyGrid& rooms, const StoreyGrid& navigation, const Segmentation& segmentation,
                       const std::vector<ClusterId>& ids);
@@ -40,6 +40,7 @@ class FreeSpaceGraph {
   FreeSpaceGraphConfig config_;
   std::map<FloorId, Storey> storeys_;
   FreeSpace result_;
+  std::map<PassageId, int> found_;  // calls that found each living passage
   int64_t next_cluster_ = 0;
   int64_t next_passage_ = 0;
   int64_t next_vertex_ = 0;

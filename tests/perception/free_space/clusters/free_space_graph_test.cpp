@@ -140,6 +140,9 @@ TEST(FreeSpaceGraphTest, ADoorwayIsRememberedWhileSomebodyStandsInIt) {
   fillClearance(blocked, 5);
   FreeSpaceGraph graph{FreeSpaceGraphConfig{}};
   graph.update(open, open);
+  graph.update(blocked, blocked);
+  EXPECT_TRUE(graph.result().passages.empty()) << "seen once: it may have been a wall half seen";
+  for (int call = 0; call < 10; ++call) graph.update(open, open);
   const auto door = graph.result().passages.begin()->first;
   graph.update(blocked, blocked);
   ASSERT_EQ(graph.result().passages.size(), 1U);
@@ -147,6 +150,21 @@ TEST(FreeSpaceGraphTest, ADoorwayIsRememberedWhileSomebodyStandsInIt) {
   graph.update(open, open);
   ASSERT_EQ(graph.result().passages.size(), 1U);
   EXPECT_EQ(graph.result().passages.begin()->first, door);
+}
+
+TEST(FreeSpaceGraphTest, WhatNobodyCanWalkThroughIsAPassageButNoDoor) {
+  const StoreyGrid rooms = gridOf(kTwoRooms, kCells);
+  const auto doorWithSill = [&rooms](int y_end) {
+    StoreyGrid navigation = rooms;
+    for (int y = 28; y < y_end; ++y) navigation.state[navigation.index(65, y)] = CellState::kObstacle;
+    fillClearance(navigation, 5);
+    FreeSpaceGraph graph{FreeSpaceGraphConfig{}};
+    graph.update(rooms, navigation);
+    EXPECT_EQ(graph.result().passages.size(), 1U);
+    return graph.result().passages.begin()->second.is_door;
+  };
+  EXPECT_FALSE(doorWithSill(42)) << "a window has a sill";
+  EXPECT_TRUE(doorWithSill(35)) << "a box leaves half of the door";
 }
 
 TEST(FreeSpaceGraphTest, StoreysDoNotShareIds) {
