@@ -48,10 +48,11 @@ FloorWalls wallsOfFloor(const SituationalGraph& graph, FloorId floor,
                         const std::set<std::pair<PlaneId, PlaneId>>& before) {
   const std::vector<Candidate> all = candidates(graph, floor, before);
   FloorWalls result;
-  const Candidate* widest = nullptr;
+  if (all.empty()) return result;
+  const Candidate* widest = &all.front();
   const Candidate* across = nullptr;
   for (const Candidate& c : all)
-    if (widest == nullptr || c.rank_m > widest->rank_m) widest = &c;
+    if (c.rank_m > widest->rank_m) widest = &c;
   for (const Candidate& c : all)
     if (std::abs(c.normal.dot(widest->normal)) < kAcross && (across == nullptr || c.rank_m > across->rank_m))
       across = &c;
