@@ -98,7 +98,8 @@ double overlapArea(const Polygon2d& a, const Polygon2d& b) {
 
 double gapBetween(const Polygon2d& a, const Polygon2d& b) {
   if (a.empty() || b.empty()) return std::numeric_limits<double>::infinity();
-  if ((a.size() > 2 && convexContains(a, b.front())) || (b.size() > 2 && convexContains(b, a.front()))) return 0;
+  if ((a.size() > 2 && convexContains(a, b.front())) || (b.size() > 2 && convexContains(b, a.front())))
+    return 0;
   double gap = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < a.size(); ++i)
     for (size_t k = 0; k < b.size(); ++k) {

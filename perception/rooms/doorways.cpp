@@ -6,7 +6,7 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kMinWidth_m = 0.3;   // nobody passes a narrower one
+constexpr double kMinWidth_m = 0.3;    // nobody passes a narrower one
 constexpr double kMaxOff_m = 0.7;      // a passage may be found so far from its wall's face
 constexpr double kOpenEnd = 1.3;       // a side this much wider than its passage has no jambs
 constexpr double kParallel_cos = 0.5;  // of the chord and the wall: jambs may not face each other

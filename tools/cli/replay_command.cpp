@@ -58,8 +58,8 @@ std::vector<std::string> stagesOf(const Arguments& arguments) {
 
 void run(const Arguments& arguments) {
   if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
-  ReplayOptions options{arguments.log, configOf(arguments), arguments.odometry, stagesOf(arguments),
-                        progressLine(), arguments.record};
+  ReplayOptions options{arguments.log,       configOf(arguments), arguments.odometry,
+                        stagesOf(arguments), progressLine(),      arguments.record};
   Replay replay(std::move(options));
   replay.run();
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%60s\r", "");
