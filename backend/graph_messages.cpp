@@ -41,18 +41,6 @@ graph_node_t toMessage(const RoomNode& node) {
   return m;
 }
 
-// Merges follow one another: the plane that stands at their end.
-PlaneId livesOnIn(const SituationalGraph& graph, PlaneId id) {
-  size_t steps = 0;
-  for (auto it = graph.merged_planes.find(id); it != graph.merged_planes.end();
-       it = graph.merged_planes.find(id)) {
-    id = it->second;
-    if (++steps > graph.merged_planes.size())
-      throw std::logic_error("graph messages: planes merged in a circle");
-  }
-  return id;
-}
-
 graph_plane_t planeMessage(const SituationalGraph& graph, PlaneId id) {
   if (const auto node = graph.planes.find(id); node != graph.planes.end())
     return toMessage(mapPlane(node->second));

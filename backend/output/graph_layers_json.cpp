@@ -3,6 +3,8 @@
 #include <limits>
 #include <set>
 
+#include "backend/graph/map_plane.h"
+
 namespace sgraphs {
 namespace {
 
@@ -20,18 +22,10 @@ const char* kindName(RoomKind kind) {
   throw std::logic_error("unknown kind of room");
 }
 
-// A wall that was merged lives on as another.
-PlaneId livingWall(const SituationalGraph& graph, PlaneId id) {
-  for (auto merged = graph.merged_planes.find(id); merged != graph.merged_planes.end();
-       merged = graph.merged_planes.find(id))
-    id = merged->second;
-  return graph.planes.contains(id) ? id : PlaneId{};
-}
-
 std::set<PlaneId> wallsOf(const SituationalGraph& graph, const RoomNode& room) {
   std::set<PlaneId> walls;
   for (const PlaneId wall : room.seen.walls())
-    if (const PlaneId living = livingWall(graph, wall); living.valid()) walls.insert(living);
+    if (const PlaneId living = livingPlane(graph, wall); living.valid()) walls.insert(living);
   return walls;
 }
 

@@ -25,7 +25,7 @@ FreeSpaceEvidence evidenceOf(const SituationalGraph& graph, const EvidenceConfig
     if (first)
       for (const auto& [plane_id, plane] : graph.planes) update.planes.push_back(mapPlane(plane));
     first = false;
-    evidence.step(*node.keyframe, update);
+    evidence.take(*node.keyframe, update);
   }
   return evidence;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "backend/graph/map_plane.h"
 #include "backend/rooms/center_binding.h"
 #include "backend/rooms/room_association.h"
 
@@ -63,16 +64,10 @@ std::vector<RoomObservation> RoomLayer::usable(const Rooms& rooms, std::vector<s
 // Observations are of an earlier map: planes may have been merged since.
 void RoomLayer::resolve(RoomObservation& room) const {
   const SituationalGraph& graph = builder_.graph();
-  const auto resolved = [&](PlaneId id) {
-    for (auto it = graph.merged_planes.find(id); it != graph.merged_planes.end();
-         it = graph.merged_planes.find(id))
-      id = it->second;
-    return graph.planes.contains(id) ? id : PlaneId{};
-  };
-  for (RoomCorner& corner : room.polygon) corner.wall = resolved(corner.wall);
+  for (RoomCorner& corner : room.polygon) corner.wall = livingPlane(graph, corner.wall);
   for (auto& [a, b] : room.pairs) {
-    a = resolved(a);
-    b = resolved(b);
+    a = livingPlane(graph, a);
+    b = livingPlane(graph, b);
   }
   std::erase_if(room.pairs, [&](const auto& pair) {
     return !pair.first.valid() || !pair.second.valid() || pair.first == pair.second ||

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "backend/graph/map_plane.h"
 #include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
@@ -49,14 +50,8 @@ double departure(const WallRelation& relation, const SituationalGraph& graph) {
 }  // namespace
 
 void HeadingEvidence::update(const SituationalGraph& graph) {
-  const auto resolved = [&](PlaneId id) {
-    for (auto it = graph.merged_planes.find(id); it != graph.merged_planes.end();
-         it = graph.merged_planes.find(id))
-      id = it->second;
-    return id;
-  };
   for (auto it = information_.begin(); it != information_.end();) {
-    const PlaneId now = resolved(it->first);
+    const PlaneId now = livesOnIn(graph, it->first);
     if (now == it->first) {
       ++it;
       continue;

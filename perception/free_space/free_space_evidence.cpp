@@ -121,8 +121,7 @@ void FreeSpaceEvidence::moveWalls(const std::vector<MapPlane>& planes) {
   }
 }
 
-std::vector<FloorId> FreeSpaceEvidence::step(const std::optional<Keyframe>& keyframe,
-                                             const MapUpdate& update) {
+void FreeSpaceEvidence::take(const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
   if (keyframe) arrive(*keyframe, update);
   for (const MapKeyframe& k : update.keyframes) {
     const auto it = views_.find(k.id);
@@ -132,6 +131,11 @@ std::vector<FloorId> FreeSpaceEvidence::step(const std::optional<Keyframe>& keyf
     settle(k.id);
   }
   moveWalls(update.planes);
+}
+
+std::vector<FloorId> FreeSpaceEvidence::step(const std::optional<Keyframe>& keyframe,
+                                             const MapUpdate& update) {
+  take(keyframe, update);
   std::vector<FloorId> changed;
   for (auto& [floor, map] : storeys_)
     if (map.refresh()) changed.push_back(floor);

@@ -22,6 +22,8 @@ class FreeSpaceEvidence {
 
   // Takes the round's keyframe, if it had one, and what its map changed; the storeys whose grids changed.
   std::vector<FloorId> step(const std::optional<Keyframe>& keyframe, const MapUpdate& update);
+  // The votes alone: grids and clearance stay as they are until the next step().
+  void take(const std::optional<Keyframe>& keyframe, const MapUpdate& update);
 
   const std::map<FloorId, StoreyMap>& storeys() const { return storeys_; }
   size_t numKeyframes() const { return views_.size(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "common/geometry/simplify_chain.h"
 #include "perception/planes/plane_grid.h"
 
 namespace sgraphs {
@@ -49,29 +50,6 @@ Polygon borderOf(const PlaneGrid& grid) {
     direction = left ? (direction + 3) % 4 : (direction + 1) % 4;
   } while (col != start_col || row != start_row);
   return border;
-}
-
-// Douglas-Peucker on the open chain first..last (indices modulo the size), marking what stays.
-void simplifyChain(const Polygon& polygon, size_t first, size_t last, double tolerance_m,
-                   std::vector<uint8_t>& stays) {
-  std::vector<std::pair<size_t, size_t>> open{{first, last}};
-  const size_t n = polygon.size();
-  while (!open.empty()) {
-    const auto [a, b] = open.back();
-    open.pop_back();
-    double worst_m = tolerance_m;
-    size_t at = 0;
-    for (size_t i = a + 1; i < b; ++i) {
-      const double d = distanceToSegment(polygon[i % n], polygon[a % n], polygon[b % n]);
-      if (d <= worst_m) continue;
-      worst_m = d;
-      at = i;
-    }
-    if (at == 0) continue;
-    stays[at % n] = 1;
-    open.emplace_back(a, at);
-    open.emplace_back(at, b);
-  }
 }
 
 Polygon simplified(const Polygon& polygon, double tolerance_m) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/geometry/simplify_chain.h"
+
 namespace sgraphs {
 
 Polygon2d clipped(const Polygon2d& polygon, const Eigen::Vector2d& normal, double d) {
@@ -63,26 +65,9 @@ double sharedArea(const Polygon2d& a, const Polygon2d& b) {
 
 std::vector<size_t> straightened(const Polygon2d& points, double tolerance_m) {
   if (points.empty()) return {};
-  std::vector<bool> kept(points.size(), false);
-  kept.front() = kept.back() = true;
-  std::vector<std::pair<size_t, size_t>> open{{0, points.size() - 1}};
-  while (!open.empty()) {
-    const auto [first, last] = open.back();
-    open.pop_back();
-    size_t farthest = first;
-    double most = tolerance_m;
-    for (size_t i = first + 1; i < last; ++i) {
-      const double off = distanceToSegment(points[i], points[first], points[last]);
-      if (off > most) {
-        most = off;
-        farthest = i;
-      }
-    }
-    if (farthest == first) continue;
-    kept[farthest] = true;
-    open.emplace_back(first, farthest);
-    open.emplace_back(farthest, last);
-  }
+  std::vector<uint8_t> kept(points.size(), 0);
+  kept.front() = kept.back() = 1;
+  simplifyChain(points, 0, points.size() - 1, tolerance_m, kept);
   std::vector<size_t> indices;
   for (size_t i = 0; i < kept.size(); ++i)
     if (kept[i]) indices.push_back(i);

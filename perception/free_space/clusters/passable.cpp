@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perception/free_space/clusters/cell_labels.h"
+
 namespace sgraphs {
 namespace {
 
@@ -10,9 +12,8 @@ constexpr double kGap_m = 0.3;    // what a narrow robot needs, less a cell
 constexpr double kDepth_m = 0.2;  // a wall's own cells lie so far before and behind the narrowest place
 
 bool blocks(const StoreyGrid& grid, const Eigen::Vector2d& p_map) {
-  const Eigen::Vector2d cell = ((p_map - grid.origin_map) / grid.cell_m).array().floor();
-  const int x = static_cast<int>(cell.x()), y = static_cast<int>(cell.y());
-  return grid.contains(x, y) && grid.state[grid.index(x, y)] == CellState::kObstacle;
+  const CellStep cell = cellAt(grid, p_map);
+  return stateAt(grid, cell.x, cell.y) == CellState::kObstacle;
 }
 
 // The longest stretch from a to b that nothing blocks [m].

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/geometry/convex_polygon.h"
+#include "common/geometry/simplify_chain.h"
 
 namespace sgraphs {
 namespace {
@@ -65,29 +66,6 @@ class Tracer {
   const CellLabels& labels_;
   std::vector<uint8_t> seen_;
 };
-
-// Douglas-Peucker between two corners (indices modulo the size).
-void simplify(const std::vector<Eigen::Vector2d>& corners, size_t first, size_t last, double tolerance_m,
-              std::vector<uint8_t>& stays) {
-  const size_t n = corners.size();
-  std::vector<std::pair<size_t, size_t>> open{{first, last}};
-  while (!open.empty()) {
-    const auto [a, b] = open.back();
-    open.pop_back();
-    double worst_m = tolerance_m;
-    size_t at = 0;
-    for (size_t i = a + 1; i < b; ++i) {
-      const double d_m = distanceToSegment(corners[i % n], corners[a % n], corners[b % n]);
-      if (d_m <= worst_m) continue;
-      worst_m = d_m;
-      at = i;
-    }
-    if (at == 0) continue;
-    stays[at % n] = 1;
-    open.emplace_back(a, at);
-    open.emplace_back(at, b);
-  }
-}
 
 bool touch(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
            const Eigen::Vector2d& d) {
@@ -177,7 +155,7 @@ std::vector<size_t> simplifiedLoop(const CellLoop& loop, const std::vector<size_
   const std::vector<size_t> anchors = listed();
   for (size_t k = 0; k < anchors.size(); ++k) {
     const size_t next = k + 1 < anchors.size() ? anchors[k + 1] : anchors.front() + n;
-    simplify(loop.corners, anchors[k], next, tolerance_m, stays);
+    simplifyChain(loop.corners, anchors[k], next, tolerance_m, stays);
   }
   return listed();
 }
