@@ -9,10 +9,11 @@
 #include "backend/backend_config.h"
 #include "backend/graph/situational_graph.h"
 #include "common/types/keyframe.h"
+#include "common/types/loops.h"
 
 namespace sgraphs {
 
-// What joined a round. Loops become a further member.
+// What joined a round.
 struct RoundInput {
   int64_t round = 0;
   Time time;
@@ -22,6 +23,7 @@ struct RoundInput {
   // Made of an earlier round's map; none: the layer is off, the first round, or the message was lost.
   std::shared_ptr<const FreeSpace> free_space = {};
   std::optional<Rooms> rooms = {};
+  std::optional<LoopClosures> loops = {};
 };
 
 struct RoundOutput {

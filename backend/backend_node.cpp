@@ -8,7 +8,6 @@
 #include "backend/graph_messages.h"
 #include "common/bus/status.h"
 #include "lcmtypes/convert/convert.h"
-#include "lcmtypes/convert/convert_layers.h"
 
 namespace sgraphs {
 namespace {
@@ -16,8 +15,7 @@ namespace {
 // Planes may come before the keyframe's own message does, by no more than what fits the queues.
 constexpr int64_t kMaxPlanesAhead = 100;
 
-// What a round waits for: of its keyframe, and of the round before. Loops join as a further row; a row counts
-// if SESSION lists its stage.
+// What a round waits for: of its keyframe, and of the round before. A row counts if SESSION lists its stage.
 struct JoinedInput {
   const char* channel;
   const char* stage;
@@ -25,8 +23,14 @@ struct JoinedInput {
 constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry"},
                                             {channels::kKeyframePlanes.name, "planes"}};
 constexpr JoinedInput kKeyedByRound[] = {{channels::kFreeSpace.name, "free-space"},
-                                         {channels::kRooms.name, "rooms"}};
-constexpr const char* kStages[] = {"odometry", "planes", "free-space", "rooms", "backend"};
+                                         {channels::kRooms.name, "rooms"},
+                                         {channels::kLoopClosures.name, "loops"}};
+constexpr const char* kStages[] = {"odometry", "planes", "free-space", "rooms", "loops", "backend"};
+
+bool keyedByRound(const std::string& channel) {
+  return std::any_of(std::begin(kKeyedByRound), std::end(kKeyedByRound),
+                     [&](const JoinedInput& input) { return channel == input.channel; });
+}
 
 }  // namespace
 
@@ -38,8 +42,12 @@ BackendNode::BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode)
   listen(channels::kOdometry, &BackendNode::onOdometry);
   listen(channels::kKeyframe, &BackendNode::onKeyframe);
   listen(channels::kKeyframePlanes, &BackendNode::onPlanes);
-  listen(channels::kFreeSpace, &BackendNode::onFreeSpace);
-  listen(channels::kRooms, &BackendNode::onRooms);
+  const auto feedback = [this](const auto& channel) {
+    early_.listen(bus_, gate_, channel, [this, channel](const auto& m) { onFeedback(channel, m); });
+  };
+  feedback(channels::kFreeSpace);
+  feedback(channels::kRooms);
+  feedback(channels::kLoopClosures);
   listen(channels::kOdometryEnd, &BackendNode::onOdometryEnd);
   listen(channels::kPlanesEnd, &BackendNode::onPlanesEnd);
   listen(channels::kStreamEnd, &BackendNode::onStreamEnd);
@@ -115,36 +123,24 @@ void BackendNode::onPlanes(const keyframe_planes_t& m) {
   advance();
 }
 
-void BackendNode::onFreeSpace(const free_space_t& m) {
-  const std::string channel = channels::kFreeSpace.name;
-  if (done() || !gate_.accept(channel, m.header)) return;
-  bool refused = false;
-  auto chunks = free_space_assembly_.add(m, refused);
-  if (refused || m.round >= rounds_)
-    return gate_.reject(channel, "a round that cannot be, or chunks that do not match");
-  if (!chunks) return;
-  if (!joiner_.arrived({channel, m.round, m.header.seq})) return gate_.reject(channel, "its round is closed");
-  free_space_held_[m.round] = std::move(*chunks);
-  advance();
-}
-
-void BackendNode::onRooms(const rooms_t& m) {
-  const std::string channel = channels::kRooms.name;
-  if (done() || !gate_.accept(channel, m.header)) return;
-  bool refused = false;
-  const auto chunks = rooms_assembly_.add(m, refused);
-  if (refused || m.round >= rounds_)
-    return gate_.reject(channel, "a round that cannot be, or chunks that do not match");
-  if (!chunks) return;
-  std::optional<Rooms> rooms = fromMessages(*chunks);
-  if (!rooms) {
-    gate_.reject(channel, "content that cannot be right");
-    joiner_.lost(channel, m.round);
-    return advance();
+template <typename Message>
+void BackendNode::onFeedback(const Channel<Message>& channel, const Message& m) {
+  if (done() || !gate_.accept(channel.name, m.header)) return;
+  switch (feedback_.add(m, rounds_)) {
+    case RoundFeedback::Fate::kIncomplete:
+      return;
+    case RoundFeedback::Fate::kRefused:
+      return gate_.reject(channel.name, "a round that cannot be, or chunks that do not match");
+    case RoundFeedback::Fate::kUnreadable:
+      gate_.reject(channel.name, "content that cannot be right");
+      joiner_.lost(channel.name, m.round);
+      break;
+    case RoundFeedback::Fate::kComplete:
+      if (!joiner_.arrived({channel.name, m.round, m.header.seq})) {
+        feedback_.drop(channel.name, m.round);
+        return gate_.reject(channel.name, "its round is closed");
+      }
   }
-  if (!joiner_.arrived({channel, m.round, m.header.seq})) return gate_.reject(channel, "its round is closed");
-  rooms_held_[m.round] = std::move(*rooms);
-  rooms_why_not_ = m.why_not;
   advance();
 }
 
@@ -260,23 +256,12 @@ void BackendNode::giveUpAwaited() {
   advance();
 }
 
-// Hands over what has joined: the free space is brought up to date, of the rooms the newest count.
 void BackendNode::takeFeedback(const RoundJoiner::Joined& joined) {
   for (const std::string& channel : joined.missing) ++missing_[channel];
   feedback_taken_ = rounds_ - 1;
-  for (const RoundJoiner::Output& output : joined.outputs) {
-    if (output.input == channels::kFreeSpace.name) {
-      auto next = std::make_shared<FreeSpace>(free_space_ ? *free_space_ : FreeSpace{});
-      if (applyMessages(free_space_held_.at(output.key), *next))
-        free_space_ = std::move(next);
-      else
-        gate_.reject(output.input, "content that cannot be right");
-      free_space_held_.erase(output.key);
-    } else if (output.input == channels::kRooms.name) {
-      rooms_ = std::move(rooms_held_.at(output.key));
-      rooms_held_.erase(output.key);
-    }
-  }
+  for (const RoundJoiner::Output& output : joined.outputs)
+    if (keyedByRound(output.input) && !feedback_.take(output.input, output.key))
+      gate_.reject(output.input, "content that cannot be right");
 }
 
 bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) {
@@ -320,8 +305,9 @@ void BackendNode::runRound(RoundInput input, const RoundJoiner::Joined& joined) 
   const bool idle = !input.keyframe;
   const std::vector<map_chunk_t> map_chunks = idle ? std::vector<map_chunk_t>{} : mapChunks(*input.keyframe);
   if (mode_ == RoundJoiner::Mode::kLive) publishSchedule(input, joined);
-  input.free_space = free_space_;
-  input.rooms = std::exchange(rooms_, std::nullopt);
+  input.free_space = feedback_.freeSpace();
+  input.rooms = feedback_.handOutRooms();
+  input.loops = feedback_.handOutLoops();
   const Stopwatch watch;
   newest_round_ = core_.step(std::move(input));
   latency_.add(watch.elapsedUs());
@@ -374,7 +360,7 @@ void BackendNode::endRun() {
     }
     ++final_rounds_;
     const bool changed = !newest_round_.changed.empty() || !newest_round_.changed_planes.empty() ||
-                         newest_round_.changed_rooms;
+                         newest_round_.changed_rooms || feedback_.searching();
     quiet_rounds_ = changed ? 0 : quiet_rounds_ + 1;
   }
   conclude(end);
@@ -394,7 +380,7 @@ void BackendNode::conclude(Time end) {
     because(std::to_string(n) + " " + channel + " incomplete when their round ran");
   if (!session_) because("no SESSION arrived");
   because(*ending_);
-  because(rooms_why_not_);
+  for (const std::string& reason : feedback_.whyNot()) because(reason);
   m.reproducible = m.why_not.empty();
   publisher_.send(channels::kRunResult, m);
   result_ = std::move(m);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backend/backend.h"
+#include "backend/round_feedback.h"
 #include "backend/round_joiner.h"
 #include "common/base/performance.h"
 #include "common/bus/bus.h"
@@ -16,7 +17,6 @@
 #include "common/bus/input_gate.h"
 #include "common/bus/publisher.h"
 #include "common/types/session.h"
-#include "lcmtypes/convert/chunks.h"
 #include "lcmtypes/convert/keyframe_assembly.h"
 
 namespace sgraphs {
@@ -47,8 +47,8 @@ class BackendNode {
   // anything, runs the final rounds, publishes RUN_RESULT. `why_not`: why another run may differ; empty if it
   // may not.
   void finish(const std::string& why_not);
-  // The round whose FREE_SPACE and ROOMS the next one waits for; -1: none. What a datagram lost is sent by
-  // nobody again: the caller, who has a clock, lets the round go on without.
+  // The round whose FREE_SPACE, ROOMS and LOOP_CLOSURES the next one waits for; -1: none. What a datagram
+  // lost is sent by nobody again: the caller, who has a clock, lets the round go on without.
   int64_t awaitedRound() const;
   void giveUpAwaited();
   // Sends RUN_RESULT once more, for a reader that lost it (same sequence number).
@@ -79,8 +79,8 @@ class BackendNode {
   void onOdometry(const odometry_t& m);
   void onKeyframe(const keyframe_t& m);
   void onPlanes(const keyframe_planes_t& m);
-  void onFreeSpace(const free_space_t& m);
-  void onRooms(const rooms_t& m);
+  template <typename Message>
+  void onFeedback(const Channel<Message>& channel, const Message& m);
   void onSchedule(const round_schedule_t& m);
   void onOdometryEnd(const stream_end_t& m);
   void onPlanesEnd(const stream_end_t& m);
@@ -125,15 +125,8 @@ class BackendNode {
   std::vector<OdometryEstimate> scans_;
   std::map<int64_t, KeyframePlanes> planes_;  // of keyframes whose rounds have not run, by keyframe
   int64_t newest_planes_ = -1;
-  // Made of an earlier round's map, by that round: not joined yet, then joined and not yet handed in.
-  RoundAssembly<free_space_t> free_space_assembly_;
-  RoundAssembly<rooms_t> rooms_assembly_;
-  std::map<int64_t, std::vector<free_space_t>> free_space_held_;
-  std::map<int64_t, Rooms> rooms_held_;
-  std::shared_ptr<const FreeSpace> free_space_;
-  std::optional<Rooms> rooms_;
+  RoundFeedback feedback_;
   int64_t feedback_taken_ = -1;             // newest round
-  std::string rooms_why_not_;               // as the newest message has it
   std::map<std::string, int64_t> missing_;  // outputs that rounds went without, by channel
   std::optional<std::string> odometry_end_why_not_, planes_end_why_not_;  // of the stages that have ended
   bool input_ended_ = false;

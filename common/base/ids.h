@@ -24,5 +24,6 @@ using FloorId = Id<'f'>;
 using VertexId = Id<'p'>;   // of free space
 using ClusterId = Id<'c'>;  // of free space
 using PassageId = Id<'d'>;  // doorways and other passages between clusters
+using LoopId = Id<'l'>;     // loop closures
 
 }  // namespace sgraphs

@@ -22,6 +22,7 @@ constexpr std::array kTable{
     Row{"PLANES_END", "stream_end_t", "sgraphs-planes", "once", false},
     Row{"FREE_SPACE", "free_space_t", "sgraphs-free-space", "per round, chunks", false},
     Row{"ROOMS", "rooms_t", "sgraphs-rooms", "per round, chunks", false},
+    Row{"LOOP_CLOSURES", "loop_closures_t", "sgraphs-loops", "per round, chunks", false},
     Row{"GRAPH_UPDATE", "graph_update_t", "sgraphs-backend", "per round", false},
     Row{"GRAPH_SNAPSHOT", "graph_update_t", "sgraphs-backend", "every 50 rounds", false},
     Row{"MAP_CHUNK", "map_chunk_t", "sgraphs-backend", "per keyframe, chunks", false},
@@ -32,6 +33,7 @@ constexpr std::array kTable{
     Row{"STATUS_PLANES", "status_t", "sgraphs-planes", "1 Hz", false},
     Row{"STATUS_FREE_SPACE", "status_t", "sgraphs-free-space", "1 Hz", false},
     Row{"STATUS_ROOMS", "status_t", "sgraphs-rooms", "1 Hz", false},
+    Row{"STATUS_LOOPS", "status_t", "sgraphs-loops", "1 Hz", false},
     Row{"STATUS_BACKEND", "status_t", "sgraphs-backend", "1 Hz", false},
 };
 

@@ -8,6 +8,7 @@
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
+#include "sgraphs/loop_closures_t.hpp"
 #include "sgraphs/map_chunk_t.hpp"
 #include "sgraphs/map_to_odom_t.hpp"
 #include "sgraphs/odometry_t.hpp"
@@ -40,6 +41,7 @@ inline constexpr Channel<stream_end_t> kOdometryEnd{"ODOMETRY_END"};
 inline constexpr Channel<stream_end_t> kPlanesEnd{"PLANES_END"};
 inline constexpr Channel<free_space_t> kFreeSpace{"FREE_SPACE"};
 inline constexpr Channel<rooms_t> kRooms{"ROOMS"};
+inline constexpr Channel<loop_closures_t> kLoopClosures{"LOOP_CLOSURES"};
 inline constexpr Channel<graph_update_t> kGraphUpdate{"GRAPH_UPDATE"};
 inline constexpr Channel<graph_update_t> kGraphSnapshot{"GRAPH_SNAPSHOT"};
 inline constexpr Channel<map_chunk_t> kMapChunk{"MAP_CHUNK"};
@@ -50,6 +52,7 @@ inline constexpr Channel<status_t> kStatusOdometry{"STATUS_ODOMETRY"};
 inline constexpr Channel<status_t> kStatusPlanes{"STATUS_PLANES"};
 inline constexpr Channel<status_t> kStatusFreeSpace{"STATUS_FREE_SPACE"};
 inline constexpr Channel<status_t> kStatusRooms{"STATUS_ROOMS"};
+inline constexpr Channel<status_t> kStatusLoops{"STATUS_LOOPS"};
 inline constexpr Channel<status_t> kStatusBackend{"STATUS_BACKEND"};
 
 // One row per channel: the README shows this table and a test compares the two.

@@ -25,6 +25,8 @@ struct MapUpdate {
   Time time;          // sensor time of the round
   KeyframeId newest;  // newest keyframe; invalid: none yet
   bool idle = false;  // the round had no keyframe
+  // Of the newest keyframe's T_map_body, conservative; tangent of body.
+  Matrix6d newest_covariance = Matrix6d::Zero();
   std::vector<MapKeyframe> keyframes;
   std::vector<MapPlane> planes;
 };

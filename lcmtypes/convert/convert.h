@@ -16,6 +16,7 @@
 #include "sgraphs/map_chunk_t.hpp"
 #include "sgraphs/odometry_t.hpp"
 #include "sgraphs/pose_t.hpp"
+#include "sgraphs/relative_pose_t.hpp"
 #include "sgraphs/session_t.hpp"
 #include "sgraphs/spot_odometry_t.hpp"
 #include "sgraphs/transform_t.hpp"
@@ -38,6 +39,9 @@ std::optional<SE3> fromMessage(const transform_t& message);
 
 session_t toMessage(const Session& session, Time now);
 std::optional<Session> fromMessage(const session_t& message);
+
+relative_pose_t toMessage(const RelativePose& relative_pose);
+std::optional<RelativePose> fromMessage(const relative_pose_t& message);
 
 spot_odometry_t toMessage(const BodyOdometry& odometry);
 std::optional<BodyOdometry> fromMessage(const spot_odometry_t& message);

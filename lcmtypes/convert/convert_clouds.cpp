@@ -23,6 +23,12 @@ std::vector<std::pair<size_t, size_t>> chunksOf(size_t n, size_t most) {
   return ranges;
 }
 
+int16_t quantise(float value, double resolution_m) {
+  return static_cast<int16_t>(std::clamp(std::round(value / resolution_m), -kMaxUnits, kMaxUnits));
+}
+
+}  // namespace
+
 relative_pose_t toMessage(const RelativePose& r) {
   relative_pose_t m{};
   m.kind = static_cast<int32_t>(r.kind);
@@ -36,7 +42,7 @@ relative_pose_t toMessage(const RelativePose& r) {
 }
 
 std::optional<RelativePose> fromMessage(const relative_pose_t& m) {
-  const std::optional<SE3> T = sgraphs::fromMessage(m.T_from_to);
+  const std::optional<SE3> T = fromMessage(m.T_from_to);
   const Matrix6d covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(m.covariance);
   if (!T || m.kind < 0 || m.kind > 2 || m.from_keyframe < 0 || m.to_keyframe < 0 || !covariance.allFinite() ||
       covariance.llt().info() != Eigen::Success)
@@ -48,12 +54,6 @@ std::optional<RelativePose> fromMessage(const relative_pose_t& m) {
                       covariance,
                       m.registered != 0};
 }
-
-int16_t quantise(float value, double resolution_m) {
-  return static_cast<int16_t>(std::clamp(std::round(value / resolution_m), -kMaxUnits, kMaxUnits));
-}
-
-}  // namespace
 
 std::vector<lidar_points_t> toMessages(const LidarScan& scan) {
   constexpr size_t kMost = kMaxChunkBytes / 17;  // 12 bytes of position, 4 of time, 1 of ring

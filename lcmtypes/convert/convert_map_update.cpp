@@ -22,8 +22,11 @@ std::optional<MapUpdate> fromMessages(std::span<const graph_update_t> chunks) {
                    .time = Time{head.header.utime},
                    .newest = KeyframeId{head.keyframe},
                    .idle = head.idle != 0,
+                   .newest_covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(
+                       head.keyframe_covariance),
                    .keyframes = {},
                    .planes = {}};
+  if (!update.newest_covariance.allFinite()) return std::nullopt;
   for (const graph_update_t& chunk : chunks) {
     if (chunk.round != head.round) return std::nullopt;
     for (const graph_node_t& node : chunk.nodes) {

@@ -1,6 +1,5 @@
 #include "perception/free_space/free_space_node.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "lcmtypes/convert/convert_layers.h"
@@ -8,75 +7,11 @@
 namespace sgraphs {
 
 FreeSpaceNode::FreeSpaceNode(Bus& bus, Step step)
-    : io_(bus, "free-space", "sgraphs-free-space"), step_(std::move(step)) {
-  io_.listen(channels::kKeyframe, [this](const keyframe_t& m) { onKeyframe(m); });
-  io_.listen(channels::kGraphUpdate, [this](const graph_update_t& m) { onGraphUpdate(m); });
-  io_.listen(channels::kOdometryEnd, [this](const stream_end_t& m) {
-    if (!io_.accept(channels::kOdometryEnd, m)) return;
-    closeChannel(io_.gate(), m, channels::kKeyframe.name);
-    keyframes_ended_ = true;
-    advance();
-  });
-  io_.listen(channels::kStreamEnd, [this](const stream_end_t& m) {
-    stream_ended_ = io_.accept(channels::kStreamEnd, m) || stream_ended_;
-  });
-  io_.listen(channels::kRunResult, [this](const run_result_t& m) {
-    if (io_.accept(channels::kRunResult, m)) io_.close();
-  });
-}
+    : io_(bus, "free-space", "sgraphs-free-space"),
+      step_(std::move(step)),
+      follower_(io_, [this](const auto& keyframe, const auto& update) { work(keyframe, update); }) {}
 
-void FreeSpaceNode::onKeyframe(const keyframe_t& m) {
-  int64_t lost_before = 0;
-  if (!io_.accept(channels::kKeyframe, m, &lost_before) || !io_.takesPart()) return;
-  // Each keyframe between has lost a message at least.
-  if (m.keyframe <= worked_.value || m.keyframe - announced_ - 1 > lost_before)
-    return io_.reject(channels::kKeyframe, "a keyframe that cannot be");
-  const KeyframeAssembly::Fate fate = assembly_.add(m);
-  if (fate == KeyframeAssembly::Fate::kRefused)
-    return io_.reject(channels::kKeyframe, "counts that do not match");
-  announced_ = std::max(announced_, m.keyframe);
-  if (fate == KeyframeAssembly::Fate::kComplete) complete_.insert(m.keyframe);
-  advance();
-}
-
-void FreeSpaceNode::onGraphUpdate(const graph_update_t& m) {
-  if (!io_.accept(channels::kGraphUpdate, m) || !io_.takesPart()) return;
-  bool refused = false;
-  const auto chunks = updates_assembly_.add(m, refused);
-  if (refused)
-    return io_.reject(channels::kGraphUpdate, "a round that cannot be, or chunks that do not match");
-  if (!chunks) return;
-  std::optional<MapUpdate> update = fromMessages(*chunks);
-  if (!update) return io_.reject(channels::kGraphUpdate, "content that cannot be right");
-  updates_.push_back(std::move(*update));
-  advance();
-}
-
-// A message of a keyframe is lost if a later keyframe's has come: the odometry speaks in order.
-bool FreeSpaceNode::cloudAwaited(KeyframeId keyframe) const {
-  return !complete_.contains(keyframe.value) && announced_ <= keyframe.value && !keyframes_ended_;
-}
-
-void FreeSpaceNode::advance() {
-  while (!updates_.empty()) {
-    const MapUpdate& update = updates_.front();
-    const bool brings_keyframe = !update.idle && update.newest > worked_;
-    if (brings_keyframe && cloudAwaited(update.newest)) return;
-    work(update);
-    updates_.pop_front();
-  }
-}
-
-void FreeSpaceNode::work(const MapUpdate& update) {
-  std::optional<Keyframe> keyframe;
-  if (!update.idle && update.newest > worked_) {
-    const bool came = assembly_.contains(update.newest.value);
-    keyframe = assembly_.take(update.newest.value);
-    if (came && !keyframe) io_.reject(channels::kKeyframe, "content that cannot be right");
-    worked_ = update.newest;
-    complete_.erase(complete_.begin(), complete_.upper_bound(worked_.value));
-  }
-  newest_time_ = std::max(newest_time_, update.time);
+void FreeSpaceNode::work(const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
   const Stopwatch watch;
   const FreeSpace& now = step_(keyframe, update);
   latency_.add(watch.elapsedUs());
@@ -85,7 +20,7 @@ void FreeSpaceNode::work(const MapUpdate& update) {
 }
 
 void FreeSpaceNode::publishStatus() {
-  io_.publishStatus(channels::kStatusFreeSpace, newest_time_, updates_.size() + assembly_.size(), latency_);
+  io_.publishStatus(channels::kStatusFreeSpace, follower_.newestTime(), follower_.queueDepth(), latency_);
 }
 
 }  // namespace sgraphs

@@ -1,18 +1,13 @@
 #pragma once
 
-#include <cstdint>
-#include <deque>
 #include <functional>
 #include <optional>
-#include <set>
-#include <string>
 
 #include "common/base/performance.h"
 #include "common/types/free_space.h"
 #include "common/types/keyframe.h"
 #include "common/types/map_update.h"
-#include "lcmtypes/convert/chunks.h"
-#include "lcmtypes/convert/keyframe_assembly.h"
+#include "perception/stage/map_follower.h"
 #include "perception/stage/stage_io.h"
 
 namespace sgraphs {
@@ -33,30 +28,18 @@ class FreeSpaceNode {
   // Ends a run whose RUN_RESULT does not come.
   void finish() { io_.close(); }
   bool done() const { return io_.closed(); }
-  bool streamEnded() const { return stream_ended_; }
+  bool streamEnded() const { return follower_.streamEnded(); }
 
   const InputGate& gate() const { return io_.gate(); }
   const LatencyHistogram& stepLatency() const { return latency_; }
 
  private:
-  void onKeyframe(const keyframe_t& m);
-  void onGraphUpdate(const graph_update_t& m);
-  void advance();
-  bool cloudAwaited(KeyframeId keyframe) const;
-  void work(const MapUpdate& update);
+  void work(const std::optional<Keyframe>& keyframe, const MapUpdate& update);
 
   StageIo io_;
   Step step_;
-  KeyframeAssembly assembly_;
-  RoundAssembly<graph_update_t> updates_assembly_;
-  std::set<int64_t> complete_;  // keyframes whose chunks have all come
-  int64_t announced_ = -1;      // newest keyframe heard of
-  bool keyframes_ended_ = false;
-  std::deque<MapUpdate> updates_;  // not yet worked on
-  KeyframeId worked_;              // newest keyframe worked on
+  MapFollower follower_;
   FreeSpace published_;
-  Time newest_time_;
-  bool stream_ended_ = false;
   LatencyHistogram latency_;
 };
 

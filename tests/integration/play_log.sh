@@ -1,8 +1,8 @@
 #!/bin/sh
 # Plays a log into the real processes, in a network namespace of its own where the machine allows one.
 #   play_log.sh BIN LOG OUT SPEED        BIN: folder of the programs; OUT: folder for what they write and say
-# Leaves OUT/<process>.txt (stdout and stderr) and OUT/codes ("<backend> <free-space> <rooms> <planes>
-# <odometry>"). Fails with 99 if a process hangs, 98 if the machine has no multicast.
+# Leaves OUT/<process>.txt (stdout and stderr) and OUT/codes ("<backend> <free-space> <rooms> <loops>
+# <planes> <odometry>"). Fails with 99 if a process hangs, 98 if the machine has no multicast.
 set -u
 BIN=$1 LOG=$2 OUT=$3 SPEED=$4
 
@@ -21,7 +21,7 @@ URL="udpm://239.255.76.68:$PORT?ttl=0&recv_buf_size=212992"
 RAW='SESSION|VELODYNE_PACKETS|LIDAR_POINTS|SPOT_ODOMETRY|ROUND_SCHEDULE|STREAM_END'
 
 mkdir -p "$OUT"
-STAGES='free-space rooms planes odometry'
+STAGES='free-space rooms loops planes odometry'
 "$BIN/sgraphs-backend" --lcm-url "$URL" -o "$OUT/result" >"$OUT/backend.txt" 2>&1 &
 pids=$!
 for stage in $STAGES; do

@@ -52,7 +52,7 @@ class ProcessesTest : public ::testing::Test {
                      (folder / name).string() + "' " + options,
                  folder / (name + ".txt"));
   }
-  // Exit codes "<backend> <free-space> <rooms> <planes> <odometry>" and what they said.
+  // Exit codes "<backend> <free-space> <rooms> <loops> <planes> <odometry>" and what they said.
   static std::pair<std::string, std::string> play(const fs::path& path, const std::string& name,
                                                   double speed) {
     const fs::path out = folder / name;
@@ -61,7 +61,7 @@ class ProcessesTest : public ::testing::Test {
                   path.string() + "' '" + out.string() + "' " + std::to_string(speed),
               folder / (name + ".txt"));
     std::string said = player.text;
-    for (const char* process : {"backend", "free-space", "rooms", "planes", "odometry"})
+    for (const char* process : {"backend", "free-space", "rooms", "loops", "planes", "odometry"})
       said += readAll(out / (std::string(process) + ".txt"));
     EXPECT_NE(player.code, 99) << "a process hangs:\n" << said;
     EXPECT_NE(player.code, 98) << "no multicast on this machine: ip link set lo multicast on; "
@@ -85,7 +85,7 @@ TEST_F(ProcessesTest, GiveTheDigestOfReplayAtAnySpeed) {
   EXPECT_EQ(digestIn(two.text), expected);
   for (const double speed : {1.0, 4.0}) {
     const auto [codes, said] = play(log, "speed_" + std::to_string(static_cast<int>(speed)), speed);
-    EXPECT_EQ(codes, "0 0 0 0 0") << said;
+    EXPECT_EQ(codes, "0 0 0 0 0 0") << said;
     EXPECT_EQ(digestIn(said), expected) << said;
   }
   EXPECT_NE(readAll(folder / "replay_1" / "graph.json").find("\"layer\":\"rooms\""), std::string::npos)
@@ -103,7 +103,7 @@ TEST_F(ProcessesTest, ALostMessageEndsWithCodeThreeAndTheReason) {
                      [&channel](const LogEvent& e, int i) { return e.channel != channel || i != 40; });
     const std::string reason = "not reproducible: 1 message(s) of " + channel + " lost";
     const auto [codes, said] = play(path, "without_" + channel, 4.0);
-    EXPECT_EQ(codes, "3 0 0 3 3") << said;
+    EXPECT_EQ(codes, "3 0 0 0 3 3") << said;
     EXPECT_NE(said.find("sgraphs-backend: " + reason), std::string::npos) << said;
     const Outcome outcome = replay(path, "replay_without_" + channel, "");
     EXPECT_EQ(outcome.code, 3);

@@ -51,9 +51,9 @@ void report(const RunRecord& record, const std::string& out_dir) {
 // What takes part for the layers asked for. Not left to SESSION: old logs know fewer stages than there are
 // now.
 std::vector<std::string> stagesOf(const Arguments& arguments) {
-  if (arguments.layers == "keyframes") return {"odometry", "backend"};
-  if (arguments.layers == "walls") return {"odometry", "planes", "backend"};
-  return {"odometry", "planes", "free-space", "rooms", "backend"};
+  if (arguments.layers == "keyframes") return {"odometry", "loops", "backend"};
+  if (arguments.layers == "walls") return {"odometry", "planes", "loops", "backend"};
+  return {"odometry", "planes", "free-space", "rooms", "loops", "backend"};
 }
 
 void run(const Arguments& arguments) {

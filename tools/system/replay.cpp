@@ -25,6 +25,7 @@ Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
   planes_.emplace(bus_, makePlanesStep(options_.config));
   free_space_.emplace(bus_, makeFreeSpaceStep(options_.config));
   rooms_.emplace(bus_, makeRoomsStep(options_.config));
+  loops_.emplace(bus_, makeLoopsStep(options_.config));
   backend_.emplace(bus_, makeBackendCore(options_.config));
   if (!options_.record.empty()) startRecording();
   connect();
@@ -169,6 +170,7 @@ RunRecord Replay::record() const {
   add("planes", *planes_);
   add("free_space", *free_space_);
   add("rooms", *rooms_);
+  add("loops", *loops_);
   if (counts_->lost_packets > 0) record.gaps["lidar_packets"] = counts_->lost_packets;
   return record;
 }

@@ -62,6 +62,7 @@ class Replay {
   std::optional<PlanesNode> planes_;
   std::optional<FreeSpaceNode> free_space_;
   std::optional<RoomsNode> rooms_;
+  std::optional<LoopsNode> loops_;
   std::optional<BackendNode> backend_;
   std::optional<BusWorker> others_;
   std::unique_ptr<LogWriter> recording_;

@@ -4,6 +4,7 @@
 
 #include "backend/backend.h"
 #include "perception/free_space/free_space_mapper.h"
+#include "perception/loops/loop_finder.h"
 #include "perception/odometry/odometry.h"
 #include "perception/planes/plane_segmentation.h"
 #include "perception/rooms/room_finder.h"
@@ -46,6 +47,13 @@ RoomsNode::Step makeRoomsStep(const SystemConfig& config) {
   auto finder = std::make_shared<RoomFinder>(config.rooms);
   return [finder](const FreeSpace& free_space, const MapUpdate& update) {
     return finder->step(free_space, update);
+  };
+}
+
+LoopsNode::Step makeLoopsStep(const SystemConfig& config) {
+  auto finder = std::make_shared<LoopFinder>(config.loops);
+  return [finder](const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
+    return finder->step(keyframe, update);
   };
 }
 

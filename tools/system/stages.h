@@ -6,6 +6,7 @@
 #include "backend/backend_node.h"
 #include "drivers/velodyne/vlp16_decoder.h"
 #include "perception/free_space/free_space_node.h"
+#include "perception/loops/loops_node.h"
 #include "perception/odometry/odometry_node.h"
 #include "perception/planes/planes_node.h"
 #include "perception/rooms/rooms_node.h"
@@ -19,6 +20,7 @@ OdometryParts makeOdometryParts(const SystemConfig& config,
 PlanesNode::Step makePlanesStep(const SystemConfig& config);
 FreeSpaceNode::Step makeFreeSpaceStep(const SystemConfig& config);
 RoomsNode::Step makeRoomsStep(const SystemConfig& config);
+LoopsNode::Step makeLoopsStep(const SystemConfig& config);
 BackendCore makeBackendCore(const SystemConfig& config);
 
 // "3 packets: wrong block flag; …"; empty if none was refused.

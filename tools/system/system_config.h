@@ -3,6 +3,7 @@
 #include "backend/backend_config.h"
 #include "common/config/config_io.h"
 #include "perception/free_space/free_space_config.h"
+#include "perception/loops/loops_config.h"
 #include "perception/odometry/odometry_config.h"
 #include "perception/planes/planes_config.h"
 #include "perception/rooms/rooms_config.h"
@@ -15,6 +16,7 @@ struct SystemConfig {
   PlanesConfig planes;
   FreeSpaceConfig free_space;
   RoomsConfig rooms;
+  LoopsConfig loops;
   BackendConfig backend;
 
   void visit(ConfigVisitor& v) {
@@ -22,6 +24,7 @@ struct SystemConfig {
     v.section("planes", planes, "Keyframe clouds to planes");
     v.section("free_space", free_space, "Keyframe clouds and the optimised map to free space");
     v.section("rooms", rooms, "Free space and walls to rooms, doorways and floors");
+    v.section("loops", loops, "Keyframe clouds and the optimised map to loop closures");
     v.section("backend", backend, "Observations to one optimised graph");
   }
 };
