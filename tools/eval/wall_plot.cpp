@@ -35,6 +35,10 @@ void drawFace(Canvas& canvas, const TrueFace& face, Color color) {
   }
 }
 
+double lowestOf(const TrueFace& face) {
+  return face.samples.empty() ? 0 : face.samples.front().at.y();  // rows stand from below
+}
+
 void drawEstimate(Canvas& canvas, const EstimatedWall& wall, bool is_false) {
   const Eigen::Vector2d normal = wall.normal.head<2>().normalized(), along(normal.y(), -normal.x());
   double low = INFINITY, high = -INFINITY;
@@ -59,7 +63,7 @@ std::string wallPlot(const Evaluation& evaluation, const Truth& truth, Storey st
   view.drawWalls();
   const std::vector<double> floors = floorHeights(truth);
   for (size_t f = 0; f < walls.faces.size(); ++f) {
-    if (!isOn(storey, walls.faces[f].point({0, 0}).z(), floors)) continue;
+    if (!isOn(storey, lowestOf(walls.faces[f]), floors)) continue;
     if (walls.doubled[f])
       drawFace(view.canvas(), walls.faces[f], kDoubled);
     else if (walls.found[f])
