@@ -33,6 +33,7 @@ constexpr std::array kTable{
     Row{"STATUS_FREE_SPACE", "status_t", "sgraphs-free-space", "1 Hz", false},
     Row{"STATUS_ROOMS", "status_t", "sgraphs-rooms", "1 Hz", false},
     Row{"STATUS_BACKEND", "status_t", "sgraphs-backend", "1 Hz", false},
+    Row{"STATUS_SPOT_BRIDGE", "status_t", "sgraphs-spot-bridge", "1 Hz", false},
 };
 
 }  // namespace

@@ -1,10 +1,7 @@
 #include "tools/system/process.h"
 
-#include <signal.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -14,6 +11,7 @@
 
 #include "common/base/error.h"
 #include "common/base/performance.h"
+#include "common/base/stop_signal.h"
 #include "common/types/session.h"
 
 namespace sgraphs {
@@ -22,34 +20,6 @@ namespace {
 constexpr double kEndOverdue_s = 30;
 constexpr double kAwaitedOverdue_s = 10;
 constexpr int kPoll_ms = 100;
-
-sigset_t stopSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  return signals;
-}
-
-// SIGINT and SIGTERM, blocked by runProcess, as a question instead of an interruption.
-class SignalWatch {
- public:
-  SignalWatch() {
-    const sigset_t signals = stopSignals();
-    file_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
-  }
-  ~SignalWatch() { close(file_); }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
-
-  bool stopRequested() {
-    signalfd_siginfo info{};
-    return read(file_, &info, sizeof info) == static_cast<ssize_t>(sizeof info);
-  }
-
- private:
-  int file_ = -1;
-};
 
 int failed(const std::string& name, const std::exception& e, int code) {
   std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
@@ -88,9 +58,7 @@ int runProcess(const ProcessText& text, int argc, char** argv,
     return app.exit(e) == 0 ? kExitDone : kExitUsage;
   }
   try {
-    // Before any other thread exists, so that all of them inherit it.
-    const sigset_t signals = stopSignals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    StopSignal::block();
     if (!config_file.empty()) loadConfigFile(visitOf(setup.config), config_file);
     for (const std::string& assignment : assignments) setConfigValue(visitOf(setup.config), assignment);
     if (threads > 0) setup.config.odometry.threads = threads;
@@ -108,14 +76,14 @@ int runProcess(const ProcessText& text, int argc, char** argv,
 }
 
 void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
-  SignalWatch signals;
+  StopSignal stop;
   Stopwatch status, silence, overdue, waiting;
   int64_t awaited = -1;
   bool heard = false;
   hooks.publish_status();
   spdlog::info("listening");
   while (!hooks.done() || setup.stay) {
-    if (signals.stopRequested()) {
+    if (stop.requested()) {
       hooks.finish("stopped by a signal");
       break;
     }
