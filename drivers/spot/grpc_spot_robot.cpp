@@ -47,6 +47,8 @@ CallStatus statusOf(grpc::StatusCode code) {
 
 std::string describe(const grpc::Status& status) {
   if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) return "no answer within the deadline";
+  if (status.error_message().find("certificate verify failed") != std::string::npos)
+    return "the robot's certificate is not signed by the one of --root-cert";
   const std::string text = oneLine(status.error_message());
   const std::string code = std::to_string(static_cast<int>(status.error_code()));
   return text.empty() ? "gRPC status " + code : text + " (gRPC status " + code + ")";
@@ -136,13 +138,19 @@ AuthReply authReply(const api::GetAuthTokenResponse& response) {
 }  // namespace
 
 Answer<AuthReply> GrpcSpotRobot::login(const Credentials& credentials) {
+  // A call without any secret says whether somebody is there. After it, a login that fails may have been
+  // carried out, and a refusal been lost: it must not be repeated soon.
+  const Answer<std::string> probe = authorityOf("auth", "");
+  if (probe.status == CallStatus::kUnavailable || probe.status == CallStatus::kTimeout)
+    return {CallStatus::kUnavailable, probe.why, {}};
   api::GetAuthTokenRequest request;
   *request.mutable_header() = wire::requestHeader(hostNow());
   request.set_username(credentials.user);
   request.set_password(credentials.password);
-  return converted<AuthReply>(connections_->call<api::AuthService>(
-                                  kAuthAuthority, "", &api::AuthService::Stub::GetAuthToken, request),
-                              authReply);
+  auto answer = connections_->call<api::AuthService>(kAuthAuthority, "",
+                                                     &api::AuthService::Stub::GetAuthToken, request);
+  if (answer.status == CallStatus::kUnavailable) answer.status = CallStatus::kTimeout;
+  return converted<AuthReply>(std::move(answer), authReply);
 }
 
 Answer<AuthReply> GrpcSpotRobot::renew(const std::string& user, const std::string& token) {

@@ -48,6 +48,7 @@ class SpotRobot {
   // Forgets all connections: the next call makes new ones.
   virtual void disconnect() = 0;
 
+  // kUnavailable only if nothing was sent; else a login without answer may have been refused.
   virtual Answer<AuthReply> login(const Credentials& credentials) = 0;
   virtual Answer<AuthReply> renew(const std::string& user, const std::string& token) = 0;
   virtual Answer<std::string> authorityOf(const std::string& service, const std::string& token) = 0;
