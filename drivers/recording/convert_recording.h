@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/geometry/se3.h"
-#include "common/io/parse_transform.h"
 #include "drivers/recording/packet_source.h"
 
 namespace sgraphs {
@@ -42,5 +41,8 @@ using Progress = std::function<void(double)>;
 // Merges the inputs in order of time into a log that ends with STREAM_END. The same inputs give the same
 // bytes. The output appears only when it is complete; throws Error if nothing usable came out.
 ConvertReport convertRecording(const ConvertOptions& options, const Progress& progress);
+
+// "x y z qx qy qz qw" (blanks or commas). Throws UsageError.
+SE3 parseTransform(const std::string& text, const std::string& option);
 
 }  // namespace sgraphs

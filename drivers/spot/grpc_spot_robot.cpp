@@ -7,6 +7,7 @@
 #include <chrono>
 #include <map>
 
+#include "drivers/host_clock.h"
 #include "drivers/spot/wire.h"
 #include "spot_wire.grpc.pb.h"
 
@@ -55,12 +56,6 @@ std::string describe(const grpc::Status& status) {
 }
 
 }  // namespace
-
-Time hostNow() {
-  using std::chrono::system_clock;
-  return {
-      std::chrono::duration_cast<std::chrono::microseconds>(system_clock::now().time_since_epoch()).count()};
-}
 
 struct GrpcSpotRobot::Connections {
   SpotAddress address;
@@ -144,7 +139,7 @@ Answer<AuthReply> GrpcSpotRobot::login(const Credentials& credentials) {
   if (probe.status == CallStatus::kUnavailable || probe.status == CallStatus::kTimeout)
     return {CallStatus::kUnavailable, probe.why, {}};
   api::GetAuthTokenRequest request;
-  *request.mutable_header() = wire::requestHeader(hostNow());
+  *request.mutable_header() = wire::requestHeader(hostClock());
   request.set_username(credentials.user);
   request.set_password(credentials.password);
   auto answer = connections_->call<api::AuthService>(kAuthAuthority, "",
@@ -155,7 +150,7 @@ Answer<AuthReply> GrpcSpotRobot::login(const Credentials& credentials) {
 
 Answer<AuthReply> GrpcSpotRobot::renew(const std::string& user, const std::string& token) {
   api::GetAuthTokenRequest request;
-  *request.mutable_header() = wire::requestHeader(hostNow());
+  *request.mutable_header() = wire::requestHeader(hostClock());
   request.set_username(user);
   request.set_token(token);
   return converted<AuthReply>(connections_->call<api::AuthService>(
@@ -165,7 +160,7 @@ Answer<AuthReply> GrpcSpotRobot::renew(const std::string& user, const std::strin
 
 Answer<std::string> GrpcSpotRobot::authorityOf(const std::string& service, const std::string& token) {
   api::GetServiceEntryRequest request;
-  *request.mutable_header() = wire::requestHeader(hostNow());
+  *request.mutable_header() = wire::requestHeader(hostClock());
   request.set_service_name(service);
   auto answer = connections_->call<api::DirectoryService>(
       kDirectoryAuthority, token, &api::DirectoryService::Stub::GetServiceEntry, request);
@@ -177,22 +172,22 @@ Answer<std::string> GrpcSpotRobot::authorityOf(const std::string& service, const
 
 Answer<TimeSyncReply> GrpcSpotRobot::syncTime(const std::string& authority, const std::string& token,
                                               const TimeSyncRequest& request) {
-  const Time sent = hostNow();
+  const Time sent = hostClock();
   auto answer = connections_->call<api::TimeSyncService>(
       authority, token, &api::TimeSyncService::Stub::TimeSyncUpdate, wire::toWire(request, sent));
-  const Time received = hostNow();
+  const Time received = hostClock();
   return converted<TimeSyncReply>(std::move(answer), [&](const api::TimeSyncUpdateResponse& response) {
     return wire::fromWire(response, sent, received);
   });
 }
 
 Answer<StateReply> GrpcSpotRobot::readState(const std::string& authority, const std::string& token) {
-  const Time sent = hostNow();
+  const Time sent = hostClock();
   api::RobotStateRequest request;
   *request.mutable_header() = wire::requestHeader(sent);
   auto answer = connections_->call<api::RobotStateService>(
       authority, token, &api::RobotStateService::Stub::GetRobotState, request);
-  const Time received = hostNow();
+  const Time received = hostClock();
   return converted<StateReply>(std::move(answer), [&](const api::RobotStateResponse& response) {
     return StateReply{wire::fromWire(response.robot_state()), sent, received};
   });

@@ -13,9 +13,6 @@ struct SpotAddress {
   std::string root_cert_pem;  // the certificate's text
 };
 
-// Host time: microseconds since the Unix epoch.
-Time hostNow();
-
 // A robot over gRPC and TLS: one channel per authority to the same address.
 class GrpcSpotRobot : public SpotRobot {
  public:

@@ -11,8 +11,8 @@
 
 #include "common/base/error.h"
 #include "common/base/performance.h"
-#include "common/base/stop_signal.h"
 #include "common/types/session.h"
+#include "tools/system/stop_signals.h"
 
 namespace sgraphs {
 namespace {
@@ -24,6 +24,16 @@ constexpr int kPoll_ms = 100;
 int failed(const std::string& name, const std::exception& e, int code) {
   std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
   return code;
+}
+
+void addStageOptions(CLI::App& app, ProcessSetup& setup, int& threads) {
+  app.add_option("--threads", threads, "Worker threads; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--odometry", setup.odometry, "lidar, encoder or fused in place of SESSION's choice");
+  app.add_flag("--stay", setup.stay, "Do not exit when the stream has ended");
+  app.add_option("--end-after-silence", setup.end_after_silence_s,
+                 "End the stream after so many seconds without a message; 0: never")
+      ->check(CLI::NonNegativeNumber);
 }
 
 }  // namespace
@@ -42,15 +52,10 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   app.add_option("--lcm-url", setup.lcm_url, "LCM provider; default: $LCM_DEFAULT_URL, else LCM's own");
   app.add_option("--config", config_file, "YAML file of settings");
   app.add_option("--set", assignments, "One setting, section.key=value; may be repeated");
-  app.add_option("--threads", threads, "Worker threads; the result does not depend on it")
-      ->check(CLI::Range(1, 64));
-  app.add_option("--odometry", setup.odometry, "lidar, encoder or fused in place of SESSION's choice");
-  app.add_flag("--stay", setup.stay, "Do not exit when the stream has ended");
-  app.add_option("--end-after-silence", setup.end_after_silence_s,
-                 "End the stream after so many seconds without a message; 0: never")
-      ->check(CLI::NonNegativeNumber);
+  if (text.stage) addStageOptions(app, setup, threads);
   bool print_config = false;
   app.add_flag("--print-config", print_config, "Print the configuration in force and exit");
+  if (text.add_options) text.add_options(app);
   if (text.writes_output) app.add_option("-o,--output", setup.output_dir, "Folder to write the result to");
   try {
     app.parse(argc, argv);
@@ -58,7 +63,8 @@ int runProcess(const ProcessText& text, int argc, char** argv,
     return app.exit(e) == 0 ? kExitDone : kExitUsage;
   }
   try {
-    StopSignal::block();
+    // Before any other thread exists, so that all of them inherit it.
+    blockStopSignals();
     if (!config_file.empty()) loadConfigFile(visitOf(setup.config), config_file);
     for (const std::string& assignment : assignments) setConfigValue(visitOf(setup.config), assignment);
     if (threads > 0) setup.config.odometry.threads = threads;
@@ -76,14 +82,14 @@ int runProcess(const ProcessText& text, int argc, char** argv,
 }
 
 void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
-  StopSignal stop;
+  StopSignals signals;
   Stopwatch status, silence, overdue, waiting;
   int64_t awaited = -1;
   bool heard = false;
   hooks.publish_status();
   spdlog::info("listening");
   while (!hooks.done() || setup.stay) {
-    if (stop.requested()) {
+    if (signals.requested()) {
       hooks.finish("stopped by a signal");
       break;
     }

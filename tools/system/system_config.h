@@ -21,9 +21,10 @@ struct SystemConfig {
 
   void visit(ConfigVisitor& v) {
     visitStages(v);
-    v.section("drivers", drivers, "Live sources; no part of the configuration's digest");
+    v.section("drivers", drivers, "The outside world on a robot: what is recorded, not what is made of it");
   }
-  // What the result of a recording depends on.
+
+  // What a result depends on.
   void visitStages(ConfigVisitor& v) {
     v.section("odometry", odometry, "Scans to poses and keyframes");
     v.section("planes", planes, "Keyframe clouds to planes");
@@ -33,8 +34,8 @@ struct SystemConfig {
   }
 };
 
-// Identity of a configuration: all keys and values but the drivers', and the number of threads, which change
-// no result.
+// Identity of a configuration: all keys and values of the stages but the number of threads, which changes no
+// result.
 inline std::string digestOf(SystemConfig config) {
   config.odometry.threads = OdometryConfig{}.threads;
   return configDigest([&config](ConfigVisitor& v) { config.visitStages(v); });

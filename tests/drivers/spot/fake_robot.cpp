@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "drivers/spot/grpc_spot_robot.h"
+#include "drivers/host_clock.h"
 #include "drivers/spot/wire.h"
 #include "spot_wire.grpc.pb.h"
 #include "tests/drivers/spot/fake_certificate.h"
@@ -50,7 +50,7 @@ struct State {
   int clocks = 0;
   std::map<std::string, std::deque<ClockEstimate>> estimates;  // by clock identifier
 
-  Time robotNow() const { return hostNow() + clock_offset; }
+  Time robotNow() const { return hostClock() + clock_offset; }
   api::ResponseHeader header(Time received, int code = kCodeOk) const {
     api::ResponseHeader header;
     *header.mutable_request_received_timestamp() = wire::toWire(received);
@@ -239,7 +239,7 @@ class Legs : public api::RobotStateService::Service {
       return {grpc::StatusCode::INTERNAL,
               "failed\nfor password " + state_.options.password + " and token " + state_.last_token};
     const int64_t period_us = state_.options.state_period.us;
-    const Time host = state_.frozen ? *state_.frozen : Time{hostNow().us / period_us * period_us};
+    const Time host = state_.frozen ? *state_.frozen : Time{hostClock().us / period_us * period_us};
     *response->mutable_header() = state_.header(state_.robotNow());
     fill(host, *response->mutable_robot_state()->mutable_kinematic_state());
     return Status::OK;
@@ -353,7 +353,7 @@ void FakeRobot::setNanPoses(bool nan) {
 
 void FakeRobot::setFrozenState(bool frozen) {
   const std::lock_guard lock(server_->state.mutex);
-  server_->state.frozen = frozen ? std::optional(hostNow()) : std::nullopt;
+  server_->state.frozen = frozen ? std::optional(hostClock()) : std::nullopt;
 }
 
 void FakeRobot::setSlowness(Duration slowness) {

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "common/base/error.h"
-#include "common/base/stop_signal.h"
 #include "common/io/text_file.h"
-#include "drivers/spot/grpc_spot_robot.h"
+#include "drivers/host_clock.h"
 #include "tests/drivers/spot/fake_trajectory.h"
+#include "tools/system/stop_signals.h"
 
 namespace sgraphs::test {
 namespace {
@@ -34,12 +34,12 @@ FakeMotion circle(Time host) {
 }
 
 int run(Options& options) {
-  StopSignal::block();
-  StopSignal stop;
+  blockStopSignals();
+  StopSignals stop;
   options.robot.motion = circle;
   if (!options.tum.empty() || !options.log.empty()) {
     const FakeTrajectory walk(options.log.empty() ? readTum(options.tum) : readOdometryOfLog(options.log),
-                              hostNow());
+                              hostClock());
     options.robot.motion = [walk](Time host) { return walk.at(host); };
   }
   FakeRobot robot(options.robot);

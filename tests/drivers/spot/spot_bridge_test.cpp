@@ -13,6 +13,7 @@
 
 #include "common/base/error.h"
 #include "common/bus/memory_bus.h"
+#include "drivers/host_clock.h"
 #include "drivers/spot/grpc_spot_robot.h"
 #include "drivers/spot/spot_bridge_node.h"
 #include "lcmtypes/convert/convert.h"
@@ -89,14 +90,14 @@ class SpotBridgeTest : public ::testing::Test {
     client_ = std::make_unique<GrpcSpotRobot>(SpotAddress{"127.0.0.1", robot_.port(), root_cert_},
                                               Duration::fromSeconds(config_.call_timeout_s));
     bridge_ = std::make_unique<SpotBridge>(*client_, config_, credentials_, [this] { return steadyNow(); });
-    node_ = std::make_unique<SpotBridgeNode>(bus_, *bridge_, own, 0, hostNow);
+    node_ = std::make_unique<SpotBridgeNode>(bus_, *bridge_, own, 0, hostClock);
   }
   void sendSession() {
     Session session;
     session.id = kSession;
-    session.start = hostNow();
+    session.start = hostClock();
     session.has_odometry = true;
-    publish(bus_, channels::kSession, toMessage(session, hostNow()));
+    publish(bus_, channels::kSession, toMessage(session, hostClock()));
   }
   // Runs until it is so.
   template <typename Predicate>
@@ -402,7 +403,7 @@ TEST_F(SpotBridgeTest, SecretsThatTheRobotRepeatsAreNotSaid) {
 TEST_F(SpotBridgeTest, AnOwnSessionIsPublishedAndEnded) {
   Session own;
   own.id = 99;
-  own.start = hostNow();
+  own.start = hostClock();
   own.writer = "test";
   own.has_odometry = true;
   own.T_body_lidar = SE3(Eigen::Quaterniond::Identity(), {0.1, 0, 0.3});

@@ -1,4 +1,4 @@
-#include "common/base/stop_signal.h"
+#include "tools/system/stop_signals.h"
 
 #include <signal.h>
 #include <sys/signalfd.h>
@@ -17,21 +17,21 @@ sigset_t stopSignals() {
 
 }  // namespace
 
-void StopSignal::block() {
+void blockStopSignals() {
   const sigset_t signals = stopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
-StopSignal::StopSignal() {
+StopSignals::StopSignals() {
   const sigset_t signals = stopSignals();
   file_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
 }
 
-StopSignal::~StopSignal() {
+StopSignals::~StopSignals() {
   close(file_);
 }
 
-bool StopSignal::requested() {
+bool StopSignals::requested() {
   signalfd_siginfo info{};
   return read(file_, &info, sizeof info) == static_cast<ssize_t>(sizeof info);
 }
