@@ -12,7 +12,7 @@ constexpr const char* kStateService = "robot-state";
 constexpr const char* kTimeService = "time-sync";
 constexpr const char* kAuthCall = "auth";
 constexpr const char* kDirectoryCall = "directory";
-constexpr Duration kRest{1'000'000};  // after the robot refused what is needed to go on
+constexpr Duration kRest{1'000'000};  // after the robot answered with an error
 constexpr Duration kResyncInterval{
     5'000'000};                      // at most so often because of a clock that seems to have jumped
 constexpr int kMaxTimeouts = 3;      // in a row, then the connection counts as lost
@@ -196,7 +196,7 @@ void SpotBridge::onFailure(const std::string& call, CallStatus status, const std
       return token_.onTokenExpired(clock_());
     case CallStatus::kRefused:
       hindrance_ = call + ": " + withoutSecrets(why, credentials_, token_.token());
-      if (call != kStateService) due_ = clock_() + kRest;
+      due_ = clock_() + kRest;
       return refuse(call, withoutSecrets(why, credentials_, token_.token()));
     case CallStatus::kTimeout:
       ++counts_[call].failed;
