@@ -35,6 +35,7 @@ constexpr std::array kTable{
     Row{"STATUS_ROOMS", "status_t", "sgraphs-rooms", "1 Hz", false},
     Row{"STATUS_LOOPS", "status_t", "sgraphs-loops", "1 Hz", false},
     Row{"STATUS_BACKEND", "status_t", "sgraphs-backend", "1 Hz", false},
+    Row{"STATUS_SPOT_BRIDGE", "status_t", "sgraphs-spot-bridge", "1 Hz", false},
 };
 
 }  // namespace

@@ -54,6 +54,7 @@ inline constexpr Channel<status_t> kStatusFreeSpace{"STATUS_FREE_SPACE"};
 inline constexpr Channel<status_t> kStatusRooms{"STATUS_ROOMS"};
 inline constexpr Channel<status_t> kStatusLoops{"STATUS_LOOPS"};
 inline constexpr Channel<status_t> kStatusBackend{"STATUS_BACKEND"};
+inline constexpr Channel<status_t> kStatusSpotBridge{"STATUS_SPOT_BRIDGE"};
 
 // One row per channel: the README shows this table and a test compares the two.
 struct Row {

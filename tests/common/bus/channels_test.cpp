@@ -46,7 +46,8 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kStatusFreeSpace, false);
   expectRow(kStatusRooms, false);
   expectRow(kStatusBackend, false);
-  EXPECT_EQ(table().size(), 25u);
+  expectRow(kStatusSpotBridge, false);
+  EXPECT_EQ(table().size(), 26u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {

@@ -173,9 +173,11 @@ TEST(SystemConfigTest, TheShippedFileIsCompleteAndHoldsTheDefaults) {
       << "sgraphs-odometry --print-config > config/sgraphs.yaml";
 }
 
-TEST(SystemConfigTest, TheDigestIsThatOfTheSettingsNotOfTheThreads) {
+TEST(SystemConfigTest, TheDigestIsThatOfTheSettingsNotOfTheThreadsOrDrivers) {
   SystemConfig one, two;
   two.odometry.threads = one.odometry.threads + 1;
+  EXPECT_EQ(digestOf(one), digestOf(two));
+  two.drivers.spot_bridge.host = "192.168.80.3";
   EXPECT_EQ(digestOf(one), digestOf(two));
   two.backend.max_iterations += 1;
   EXPECT_NE(digestOf(one), digestOf(two));
