@@ -81,9 +81,9 @@ TEST(DescribeTest, ArraysOfStructsAndOfRowsAreShownAsFarAsAsked) {
     message.planes.push_back(plane);
   }
   const std::string text = textOf(encoded(message), 2);
-  EXPECT_THAT(text, HasSubstr("planes[3]:\n  [0]:\n    normal[3]: [0.5, 0… 1 more]\n"));
+  EXPECT_THAT(text, HasSubstr("planes[3]:\n  [0]:\n    normal[3]: [0.5, 0, … 1 more]\n"));
   EXPECT_THAT(text, HasSubstr("    rms_m: 0.125\n"));
-  EXPECT_THAT(text, HasSubstr("    boundary[3][2]: [[0, 1], [2, 3]… 1 more]\n"));
+  EXPECT_THAT(text, HasSubstr("    boundary[3][2]: [[0, 1], [2, 3], … 1 more]\n"));
   EXPECT_THAT(text, HasSubstr("  … 1 more\n"));
   EXPECT_THAT(textOf(encoded(message), 8), HasSubstr("[-4.5, 5]]"));
 }

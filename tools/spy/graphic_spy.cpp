@@ -32,19 +32,21 @@ fs::path typeJar() {
          "sgraphs_spy.jar";
 }
 
-// Class path of lcm-spy; throws Error naming the packages that are missing.
+// Class path of lcm-spy; throws Error naming the packages that are missing. jchart2d.jar names the last two
+// itself; named here, lcm-spy would search them for plug-ins and complain of what it finds.
 std::string classPath() {
   const struct {
     const char *file, *package;
-  } needed[] = {{"lcm.jar", "liblcm-java"},
-                {"jchart2d.jar", "libjchart2d-java"},
-                {"jide-oss.jar", "libjide-oss-java"},
-                {"xmlgraphics-commons.jar", "libxmlgraphics-commons-java"}};
+    bool named;
+  } needed[] = {{"lcm.jar", "liblcm-java", true},
+                {"jchart2d.jar", "libjchart2d-java", true},
+                {"jide-oss.jar", "libjide-oss-java", false},
+                {"xmlgraphics-commons.jar", "libxmlgraphics-commons-java", false}};
   std::string path, missing;
-  for (const auto& [file, package] : needed) {
+  for (const auto& [file, package, named] : needed) {
     const fs::path jar = fs::path("/usr/share/java") / file;
     if (!fs::exists(jar)) missing += std::string(" ") + package;
-    path += (path.empty() ? "" : ":") + jar.string();
+    if (named) path += jar.string() + ":";
   }
   if (!onPath("java")) missing += " default-jre";
   if (!missing.empty()) throw Error("lcm-spy lacks packages: apt-get install" + missing + kOrText);
@@ -61,12 +63,11 @@ void runGraphicSpy(const std::string& url) {
                 std::string("default-jdk-headless liblcm-java, configure and build again") + kOrText);
   if (!std::getenv("DISPLAY"))
     throw Error(std::string("lcm-spy draws on a screen, and DISPLAY is not set") + kOrText);
-  // lcm-spy looks for types and plug-ins in CLASSPATH; the plug-ins listen on the default URL.
-  setenv("CLASSPATH", jar.c_str(), 1);
+  // Plug-ins listen on the default URL.
   if (!url.empty()) setenv("LCM_DEFAULT_URL", url.c_str(), 1);
   // 128 MB, which Debian's script allows, are too few for large arrays.
   const std::vector<std::string> words{"java", "-Djava.net.preferIPv4Stack=true", "-Xmx512m",
-                                       "-cp",  class_path + ":" + jar.string(),   "lcm.spy.Spy"};
+                                       "-cp",  class_path + jar.string(),         "lcm.spy.Spy"};
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
