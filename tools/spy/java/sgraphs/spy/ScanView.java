@@ -41,6 +41,7 @@ class ScanView extends TopView {
   }
 
   private synchronized void add(velodyne_packets_t message) {
+    if (message.part == 0) growing = new PointList();
     for (int i = 0; i < message.num_packets; ++i) Vlp16.decode(message.data, i * Vlp16.PACKET_BYTES, growing);
     if (message.last_part != 0) finish(message.revolution);
   }
