@@ -66,7 +66,7 @@ class Ros1Bag : public RosBag {
                   "' has no index, its recording was cut off: mend it with `rosbag reindex`");
     } catch (const rosbag::BagException& e) {
       throw Error("'" + path_ + "' is no whole bag of ROS 1 (" + e.what() +
-                  "): try `rosbag fix`, or copy it again");
+                  "): copy it again, or save what is whole with `rosbag reindex`");
     } catch (const ros::Exception& e) {
       throw Error("bag '" + path_ + "' is damaged (" + e.what() +
                   "): try `rosbag reindex`, or copy it again");
