@@ -38,12 +38,12 @@ std::string literal(const std::string& channel) {
 
 struct LcmBus::Subscription {
   LcmBus* bus;
-  Handler handler;
+  AnyHandler handler;
 
-  void onMessage(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/) {
+  void onMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     if (bus->pending_) return;
     try {
-      handler({static_cast<const uint8_t*>(buffer->data), buffer->data_size});
+      handler(channel, {static_cast<const uint8_t*>(buffer->data), buffer->data_size});
     } catch (...) {
       bus->pending_ = std::current_exception();
     }
@@ -73,11 +73,20 @@ void LcmBus::publish(const std::string& channel, Bytes bytes) {
 }
 
 void LcmBus::subscribe(const std::string& channel, Handler handler) {
+  add(
+      literal(channel), [handler = std::move(handler)](const std::string&, Bytes bytes) { handler(bytes); },
+      channel);
+}
+
+void LcmBus::subscribeAll(AnyHandler handler) {
+  add(".*", std::move(handler), "all channels");
+}
+
+void LcmBus::add(const std::string& pattern, AnyHandler handler, const std::string& what) {
   auto subscription = std::make_unique<Subscription>(Subscription{this, std::move(handler)});
-  lcm::Subscription* handle = lcm_->subscribe(literal(channel), &Subscription::onMessage, subscription.get());
+  lcm::Subscription* handle = lcm_->subscribe(pattern, &Subscription::onMessage, subscription.get());
   if (!handle)
-    throw Error("cannot subscribe to " + channel +
-                ": LCM's multicast self test failed; give this machine a " +
+    throw Error("cannot subscribe to " + what + ": LCM's multicast self test failed; give this machine a " +
                 "multicast route (`ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo`)");
   handle->setQueueCapacity(0);
   subscriptions_.push_back(std::move(subscription));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,10 +26,14 @@ class LcmBus : public Bus {
 
   void publish(const std::string& channel, Bytes bytes) override;
   void subscribe(const std::string& channel, Handler handler) override;
+  // Calls the handler for each message of every channel: for programs that watch.
+  using AnyHandler = std::function<void(const std::string& channel, Bytes)>;
+  void subscribeAll(AnyHandler handler);
   bool dispatch(int timeout_ms) override;
 
  private:
   struct Subscription;
+  void add(const std::string& pattern, AnyHandler handler, const std::string& what);
   std::unique_ptr<lcm::LCM> lcm_;
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
   std::exception_ptr pending_;  // what a handler threw while LCM's C code was on the stack

@@ -12,6 +12,7 @@
 #include "common/base/sha256.h"
 #include "common/io/tum.h"
 #include "drivers/recording/recording_writer.h"
+#include "drivers/recording/ros/ros_recording.h"
 #include "drivers/recording/scan_folder.h"
 
 namespace sgraphs {
@@ -28,6 +29,14 @@ struct LidarItem {
   Time time() const { return packet ? packet->time : scan->end; }
 };
 
+const std::string& bagPath(const ConvertOptions& options) {
+  return options.bag.empty() ? options.db3 : options.bag;
+}
+
+std::unique_ptr<RosBag> openBagFile(const ConvertOptions& options) {
+  return options.bag.empty() ? openRos2Bag(options.db3) : openRos1Bag(options.bag);
+}
+
 // The LiDAR's side of the conversion, whichever input it is.
 class LidarInput {
  public:
@@ -36,23 +45,48 @@ class LidarInput {
       packets_ = std::make_unique<PcapPacketSource>(options.pcap, options.data_port);
     else if (!options.raw.empty())
       packets_ = std::make_unique<RawPacketSource>(options.raw, options.raw_start);
+    else if (!options.scans.empty())
+      sweeps_ = std::make_unique<ScanFolder>(options.scans);
     else
-      scans_ = std::make_unique<ScanFolder>(options.scans);
+      openBag(options);
   }
   std::optional<LidarItem> next() {
     LidarItem item;
     if (packets_)
       item.packet = packets_->next();
     else
-      item.scan = scans_->next();
+      item.scan = sweeps_->next();
     return item.packet || item.scan ? std::optional(std::move(item)) : std::nullopt;
   }
-  double progress() const { return packets_ ? packets_->progress() : scans_->progress(); }
+  double progress() const { return packets_ ? packets_->progress() : sweeps_->progress(); }
+  std::string whyNothing() const { return packets_ ? packets_->whyNothing() : sweeps_->whyNothing(); }
   const PacketSource* packets() const { return packets_.get(); }
+  // What the end of the LiDAR's data has to say, and what a bag says of itself.
+  void report(ConvertReport& report) const {
+    if (packets_) report.packets = packets_->counts();
+    if (bag_) report.topics = bag_->topics();
+    report.body_frame = odometry_.body_frame;
+    report.warnings = packets_ ? packets_->warnings() : sweeps_->warnings();
+    for (const std::string& line : odometry_.warnings) report.warnings.push_back(line);
+  }
+  // That a bag holds; empty without one.
+  const std::vector<BodyOdometry>& odometry() const { return odometry_.samples; }
+  std::string odometryName() const { return bag_->topics().odometry.name; }
 
  private:
+  void openBag(const ConvertOptions& options) {
+    WantedTopics wanted = options.topics;
+    if (!options.odometry_tum.empty()) wanted.odometry = "none";
+    bag_ = std::make_unique<RosRecording>(bagPath(options), openBagFile(options), wanted);
+    odometry_ = bag_->readOdometry();
+    packets_ = bag_->packets();
+    sweeps_ = bag_->sweeps();
+  }
+
+  std::unique_ptr<RosRecording> bag_;  // outlives the two that look into it
+  RosOdometryTopic odometry_;
   std::unique_ptr<PacketSource> packets_;
-  std::unique_ptr<ScanFolder> scans_;
+  std::unique_ptr<SweepSource> sweeps_;
 };
 
 // Identity of the recording: of its content, not of when or where it was converted.
@@ -64,6 +98,12 @@ int64_t sessionId(const ConvertOptions& options) {
     const ScanFolder folder(options.scans);
     sha.add(std::string_view(sha256OfFile(folder.timesFile())));
     for (const std::string& file : folder.files()) sha.add(std::string_view(sha256OfFile(file)));
+  }
+  if (!bagPath(options).empty()) {
+    for (const std::string& file : openBagFile(options)->files())
+      sha.add(std::string_view(sha256OfFile(file)));
+    sha.add(std::string_view(options.topics.lidar));
+    sha.add(std::string_view(options.topics.odometry));
   }
   sha.add(options.raw_start.us);
   sha.add(int64_t{options.data_port});
@@ -153,12 +193,14 @@ void merge(LidarInput& lidar, LidarItem first, const std::vector<BodyOdometry>& 
 
 ConvertReport convertRecording(const ConvertOptions& options, const Progress& progress) {
   LidarInput lidar(options);
-  std::vector<BodyOdometry> odometry = readOdometry(options.odometry_tum);
+  std::vector<BodyOdometry> odometry =
+      lidar.odometry().empty() ? readOdometry(options.odometry_tum) : lidar.odometry();
+  const std::string odometry_name = lidar.odometry().empty() ? options.odometry_tum : lidar.odometryName();
   const auto num_samples = static_cast<int64_t>(odometry.size());
   std::optional<LidarItem> first = lidar.next();
-  if (!first) throw Error(lidar.packets()->whyNothing());
+  if (!first) throw Error(lidar.whyNothing());
   constexpr Time kAnyTime{std::numeric_limits<int64_t>::max()};
-  requireCommonTime(first->time(), kAnyTime, odometry, options.odometry_tum);
+  requireCommonTime(first->time(), kAnyTime, odometry, odometry_name);
   std::erase_if(odometry,
                 [&](const BodyOdometry& sample) { return sample.time < first->time() - kOdometryMargin; });
 
@@ -174,15 +216,13 @@ ConvertReport convertRecording(const ConvertOptions& options, const Progress& pr
   PendingLog output(options.output);
   RecordingWriter writer(output.log(), session);
   merge(lidar, std::move(*first), odometry, writer, report, progress);
-  requireCommonTime(report.begin, report.end, odometry, options.odometry_tum);
+  requireCommonTime(report.begin, report.end, odometry, odometry_name);
   report.events = output.log().events();
-  if (lidar.packets()) {
-    report.packets = lidar.packets()->counts();
-    report.warnings = lidar.packets()->warnings();
-    if (report.revolutions == 0) report.warnings.push_back("the recording holds no complete revolution");
-  }
+  lidar.report(report);
+  if (lidar.packets() && report.revolutions == 0)
+    report.warnings.push_back("the recording holds no complete revolution");
   if (report.odometry < num_samples)
-    report.warnings.push_back(options.odometry_tum + ": " + std::to_string(num_samples - report.odometry) +
+    report.warnings.push_back(odometry_name + ": " + std::to_string(num_samples - report.odometry) +
                               " sample(s) far outside the LiDAR's time left out");
   output.commit();
   return report;

@@ -8,17 +8,21 @@
 
 #include "common/geometry/se3.h"
 #include "drivers/recording/packet_source.h"
+#include "drivers/recording/ros/ros_topics.h"
 
 namespace sgraphs {
 
-// What `sgraphs convert` was asked for; exactly one of pcap, raw and scans is given.
+// What `sgraphs convert` was asked for; exactly one of pcap, raw, scans, bag and db3 is given.
 struct ConvertOptions {
   std::string pcap;
   uint16_t data_port = PcapPacketSource::kDataPort;
   std::string raw;
   Time raw_start;  // first firing of the first packet
   std::string scans;
-  std::string odometry_tum;  // may be empty
+  std::string bag;           // of ROS 1
+  std::string db3;           // of ROS 2
+  WantedTopics topics;       // of a bag
+  std::string odometry_tum;  // may be empty; takes the place of a bag's odometry
   SE3 T_body_lidar;
   std::string odometry_mode;  // may be empty
   std::string output;
@@ -29,7 +33,9 @@ struct ConvertReport {
   int64_t revolutions = 0;  // complete ones
   int64_t scans = 0;
   int64_t odometry = 0;
-  Time begin, end;  // of the LiDAR
+  ChosenTopics topics;     // of a bag
+  std::string body_frame;  // of a bag's odometry
+  Time begin, end;         // of the LiDAR
   int64_t events = 0;
   int64_t session = 0;
   std::vector<std::string> warnings;

@@ -9,6 +9,7 @@
 #include "common/bus/channels.h"
 #include "common/bus/log_file.h"
 #include "drivers/recording/message_header.h"
+#include "drivers/recording/sequence_gaps.h"
 #include "lcmtypes/convert/convert.h"
 
 namespace sgraphs {
@@ -24,7 +25,7 @@ std::string format(const char* pattern, ...) {
   return line;
 }
 
-void addEvent(const LogEvent& event, LogSummary& summary, std::map<std::string, header_t>& last_header) {
+void addEvent(const LogEvent& event, LogSummary& summary, std::map<std::string, SequenceGaps>& gaps) {
   ChannelSummary& channel = summary.channels[event.channel];
   if (channel.count++ == 0) {
     channel.first_us = event.timestamp_us;
@@ -43,12 +44,7 @@ void addEvent(const LogEvent& event, LogSummary& summary, std::map<std::string, 
     summary.session = fromMessage(session);
   const std::optional<header_t> header = readHeader(event);
   if (!header) return;
-  const auto last = last_header.find(event.channel);
-  const bool restarted = last == last_header.end() || header->boot != last->second.boot ||
-                         header->session != last->second.session;
-  const int64_t expected = restarted ? 0 : last->second.seq + 1;
-  channel.gaps += std::max<int64_t>(0, header->seq - expected);
-  last_header[event.channel] = *header;
+  channel.gaps += gaps.try_emplace(event.channel, true).first->second.step(*header);
 }
 
 std::string sessionLine(const LogSummary& summary) {
@@ -91,7 +87,7 @@ double ChannelSummary::rate_hz() const {
 LogSummary summariseLog(const std::string& path) {
   LogReader reader(path);
   LogSummary summary;
-  std::map<std::string, header_t> last_header;
+  std::map<std::string, SequenceGaps> gaps;
   int64_t previous_us = 0;
   while (const std::optional<LogEvent> event = reader.next()) {
     const int64_t t = event->timestamp_us;
@@ -100,7 +96,7 @@ LogSummary summariseLog(const std::string& path) {
     summary.first_us = std::min(summary.first_us, t);
     summary.last_us = std::max(summary.last_us, t);
     previous_us = t;
-    addEvent(*event, summary, last_header);
+    addEvent(*event, summary, gaps);
   }
   for (const auto& [name, channel] : summary.channels) summary.num_own += !channel.type.empty();
   summary.file_bytes = reader.fileBytes();

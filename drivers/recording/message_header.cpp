@@ -1,10 +1,10 @@
 #include "drivers/recording/message_header.h"
 
 #include <cstring>
-#include <map>
 #include <string>
 
 #include "common/bus/channels.h"
+#include "lcmtypes/describe/type_catalogue.h"
 
 namespace sgraphs {
 namespace {
@@ -12,25 +12,6 @@ namespace {
 // An LCM message begins with the fingerprint of its type; our header is the first member behind it.
 constexpr size_t kFingerprintBytes = 8;
 constexpr size_t kSequenceOffset = kFingerprintBytes + 16;
-
-int64_t fingerprintOf(const std::string& type) {
-  static const std::map<std::string, int64_t> kFingerprints{
-      {"graph_update_t", graph_update_t::getHash()},
-      {"keyframe_t", keyframe_t::getHash()},
-      {"lidar_points_t", lidar_points_t::getHash()},
-      {"map_to_odom_t", map_to_odom_t::getHash()},
-      {"odometry_t", odometry_t::getHash()},
-      {"pose_t", pose_t::getHash()},
-      {"round_schedule_t", round_schedule_t::getHash()},
-      {"run_result_t", run_result_t::getHash()},
-      {"session_t", session_t::getHash()},
-      {"spot_odometry_t", spot_odometry_t::getHash()},
-      {"status_t", status_t::getHash()},
-      {"stream_end_t", stream_end_t::getHash()},
-      {"velodyne_packets_t", velodyne_packets_t::getHash()},
-  };
-  return kFingerprints.at(type);
-}
 
 int64_t readBig64(const uint8_t* p) {
   uint64_t value = 0;
@@ -40,19 +21,27 @@ int64_t readBig64(const uint8_t* p) {
 
 }  // namespace
 
+bool hasTypeOf(const std::string& channel, Bus::Bytes bytes) {
+  const channels::Row* row = channels::find(channel.c_str());
+  return row && bytes.size() >= kFingerprintBytes &&
+         readBig64(bytes.data()) == TypeCatalogue::ours().fingerprintOf(row->type);
+}
+
 bool hasTypeOf(const LogEvent& event) {
-  const channels::Row* row = channels::find(event.channel.c_str());
-  return row && event.bytes.size() >= kFingerprintBytes &&
-         readBig64(event.bytes.data()) == fingerprintOf(row->type);
+  return hasTypeOf(event.channel, event.bytes);
+}
+
+std::optional<header_t> readHeader(const std::string& channel, Bus::Bytes bytes) {
+  const channels::Row* row = channels::find(channel.c_str());
+  if (!hasTypeOf(channel, bytes) || std::string(row->type) == "pose_t") return std::nullopt;
+  header_t header{};
+  const auto size = static_cast<int>(bytes.size() - kFingerprintBytes);
+  if (header._decodeNoHash(bytes.data(), kFingerprintBytes, size) < 0) return std::nullopt;
+  return header;
 }
 
 std::optional<header_t> readHeader(const LogEvent& event) {
-  const channels::Row* row = channels::find(event.channel.c_str());
-  if (!hasTypeOf(event) || std::string(row->type) == "pose_t") return std::nullopt;
-  header_t header{};
-  const auto size = static_cast<int>(event.bytes.size() - kFingerprintBytes);
-  if (header._decodeNoHash(event.bytes.data(), kFingerprintBytes, size) < 0) return std::nullopt;
-  return header;
+  return readHeader(event.channel, event.bytes);
 }
 
 void setSequence(LogEvent& event, int64_t seq) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "common/bus/log_file.h"
 #include "sgraphs/header_t.hpp"
@@ -8,10 +9,12 @@
 namespace sgraphs {
 
 // The event is on one of our channels, and its bytes are of that channel's type in this version.
+bool hasTypeOf(const std::string& channel, Bus::Bytes bytes);
 bool hasTypeOf(const LogEvent& event);
 
 // Header of a message on one of our channels; nothing for POSE and POSE_ODOM, which have none, and for bytes
 // of another type.
+std::optional<header_t> readHeader(const std::string& channel, Bus::Bytes bytes);
 std::optional<header_t> readHeader(const LogEvent& event);
 
 // Puts another sequence number into a message that has a header.

@@ -5,24 +5,25 @@
 #include <string>
 #include <vector>
 
-#include "common/types/lidar_scan.h"
+#include "drivers/recording/sweep_source.h"
 
 namespace sgraphs {
 
 // A folder of scans in the lidar frame (.pcd, .ply, KITTI .bin: float32 x y z intensity) and times.txt with
 // one time [s] per scan, in order of the files' names. The scans count as deskewed to their times.
-class ScanFolder {
+class ScanFolder : public SweepSource {
  public:
   // Throws Error if there is no scan, or times and scans do not agree.
   explicit ScanFolder(const std::string& path);
 
   // Next scan; nothing at the end. Points that are not finite are left out. Throws Error for a file that
   // cannot be read or holds no x, y, z.
-  std::optional<LidarScan> next();
+  std::optional<LidarScan> next() override;
 
   const std::vector<std::string>& files() const { return files_; }
   std::string timesFile() const;
-  double progress() const { return static_cast<double>(next_) / static_cast<double>(files_.size()); }
+  std::string whyNothing() const override { return "folder '" + path_ + "' holds no scan"; }
+  double progress() const override { return static_cast<double>(next_) / static_cast<double>(files_.size()); }
 
  private:
   void readTimes();

@@ -14,7 +14,7 @@ namespace {
 
 struct Arguments {
   ConvertOptions options;
-  std::string T_body_lidar, bag, db3;
+  std::string T_body_lidar;
   int64_t start_utime = 0;
 };
 
@@ -43,9 +43,19 @@ void row(const char* name, int64_t value, const char* note = "") {
   std::printf("  %-32s %10lld%s\n", name, static_cast<long long>(value), note);
 }
 
+void printTopics(const ConvertReport& report) {
+  const ChosenTopics& topics = report.topics;
+  if (!topics.lidar.name.empty())
+    std::printf("  LiDAR %s (%s)\n", topics.lidar.name.c_str(), topics.lidar.type.c_str());
+  if (!topics.odometry.name.empty())
+    std::printf("  odometry %s (%s), of frame '%s', which is the body\n", topics.odometry.name.c_str(),
+                topics.odometry.type.c_str(), report.body_frame.c_str());
+}
+
 void printReport(const ConvertReport& report, const ConvertOptions& options) {
   std::printf("%s\n", options.output.c_str());
-  if (options.scans.empty()) {
+  printTopics(report);
+  if (report.scans == 0) {
     row("packets accepted", report.packets.accepted);
     for (int fault = 1; fault < kNumPacketFaults; ++fault) {
       const int64_t count = report.packets.rejected[static_cast<size_t>(fault)];
@@ -65,12 +75,15 @@ void printReport(const ConvertReport& report, const ConvertOptions& options) {
 }
 
 void run(Arguments& arguments) {
-  if (!arguments.bag.empty() || !arguments.db3.empty())
-    throw UsageError(
-        "ROS bags (--bag, --db3) are not in this version: convert from --pcap, --raw or --scans");
   ConvertOptions& options = arguments.options;
-  const int inputs = !options.pcap.empty() + !options.raw.empty() + !options.scans.empty();
-  if (inputs != 1) throw UsageError("give exactly one of --pcap, --raw and --scans");
+  const bool is_bag = !options.bag.empty() || !options.db3.empty();
+  const int inputs = !options.pcap.empty() + !options.raw.empty() + !options.scans.empty() +
+                     !options.bag.empty() + !options.db3.empty();
+  if (inputs != 1) throw UsageError("give exactly one of --pcap, --raw, --scans, --bag and --db3");
+  if (!is_bag && !(options.topics.lidar.empty() && options.topics.odometry.empty()))
+    throw UsageError("--lidar-topic and --odometry-topic go with --bag or --db3");
+  if (!options.topics.odometry.empty() && options.topics.odometry != "none" && !options.odometry_tum.empty())
+    throw UsageError("give --odometry-topic or --odometry-tum, not both");
   if (!options.raw.empty() && arguments.start_utime <= 0)
     throw UsageError("--raw needs --start-utime: the time of its first firing [us since the Unix epoch]");
   options.raw_start = Time{arguments.start_utime};
@@ -104,8 +117,12 @@ void addConvert(CLI::App& app) {
       "--scans", options.scans,
       "Folder of .pcd, .ply or KITTI .bin scans in the lidar frame, with times.txt (one time [s] "
       "per file, in order of names)");
-  command->add_option("--bag", arguments->bag, "ROS 1 bag (not in this version)");
-  command->add_option("--db3", arguments->db3, "ROS 2 bag (not in this version)");
+  command->add_option("--bag", options.bag, "ROS 1 bag with VelodyneScan or PointCloud2, and Odometry");
+  command->add_option("--db3", options.db3, "The same of ROS 2: a .db3 file, or the folder of one recording");
+  command->add_option("--lidar-topic", options.topics.lidar,
+                      "Topic of a bag with the LiDAR; needed only where there are several");
+  command->add_option("--odometry-topic", options.topics.odometry,
+                      "Topic of a bag with the odometry, or none; needed only where there are several");
   command->add_option("--odometry-tum", options.odometry_tum,
                       "Body in its odometry frame, rows 't x y z qx qy qz qw', in the LiDAR's clock");
   command->add_option("--T-body-lidar", arguments->T_body_lidar,
@@ -115,6 +132,8 @@ void addConvert(CLI::App& app) {
   command->add_option("-o,--output", options.output, "LCM log to write")->required();
   command->footer(
       "Example:\n  sgraphs convert --pcap lidar.pcap --odometry-tum odom.tum "
+      "--T-body-lidar \"0.12 0 0.31 0 0 0 1\" -o run.lcmlog\n"
+      "  sgraphs convert --bag walk.bag --lidar-topic /velodyne_packets "
       "--T-body-lidar \"0.12 0 0.31 0 0 0 1\" -o run.lcmlog");
   command->callback([arguments] { run(*arguments); });
 }

@@ -70,6 +70,8 @@ void Replay::inspect() {
       schema = session.schema;
       writer = session.writer;
       has_session = fromMessage(session).has_value();
+      // Recorded where it stands: a recording that began at 0 could be played by nobody.
+      now_us_ = event->timestamp_us;
       if (has_session) feedSession(session);
     }
   }
@@ -81,7 +83,11 @@ void Replay::inspect() {
     throw Error("log '" + options_.log +
                 "' holds no SESSION: it is no recording of this program; make one with " +
                 "`sgraphs convert` or `sgraphs simulate`");
-  for (const LogEvent& event : schedules) feed(event);
+  for (LogEvent& event : schedules) {
+    // Known from the beginning on.
+    event.timestamp_us = now_us_;
+    feed(event);
+  }
   input_digest_ = sha256OfFile(options_.log);
 }
 

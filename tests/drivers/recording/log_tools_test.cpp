@@ -55,6 +55,20 @@ void dropEvent(const fs::path& from, const fs::path& to, const std::string& chan
   writer.close();
 }
 
+// Types that were newer than the summary's own list of them ended it.
+TEST(LogSummaryTest, EveryChannelOfTheTableIsKnown) {
+  const fs::path path = test::freshFolder() / "run.lcmlog";
+  LogWriter log(path);
+  for (const channels::Row& row : channels::table()) log.write(kStart_us, row.name, std::vector<uint8_t>(50));
+  write(log, kStart_us, channels::kRooms, rooms_t{});
+  write(log, kStart_us, channels::kMapChunk, map_chunk_t{});
+  log.close();
+  const LogSummary summary = summariseLog(path);
+  EXPECT_EQ(summary.channels.size(), channels::table().size());
+  for (const auto& [name, channel] : summary.channels) EXPECT_EQ(channel.undecodable, 1) << name;
+  EXPECT_EQ(summary.channels.at("ROOMS").count, 2);
+}
+
 TEST(LogSummaryTest, CountsChannelsAndNamesTheSession) {
   const LogSummary summary = summariseLog(makeLog());
   ASSERT_TRUE(summary.session);

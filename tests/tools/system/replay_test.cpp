@@ -61,6 +61,25 @@ class ReplayTest : public ::testing::Test {
 std::filesystem::path ReplayTest::folder;
 std::string ReplayTest::log, ReplayTest::expected;
 
+// Its first event once stood at time 0: lcm-logplayer waited 54 years for the second.
+TEST_F(ReplayTest, ItsRecordingRunsFromTheBeginningOfTheLog) {
+  ReplayOptions options;
+  options.log = log;
+  options.record = (folder / "all.lcmlog").string();
+  const std::string path = options.record;
+  Replay replay(std::move(options));
+  replay.run();
+  LogReader source(log), recorded(path);
+  int64_t before = source.next()->timestamp_us, events = 0;
+  while (const auto event = recorded.next()) {
+    EXPECT_GE(event->timestamp_us, before);
+    EXPECT_LE(event->timestamp_us - before, 2'000'000);
+    before = event->timestamp_us;
+    ++events;
+  }
+  EXPECT_GT(events, 500);
+}
+
 TEST_F(ReplayTest, GivesTheSameDigestAgainAndAtAnyNumberOfThreads) {
   const RunRecord record = replay(log, 2);
   EXPECT_EQ(record.graph_digest, expected);

@@ -1,0 +1,10 @@
+# cmake -DOUTPUT=x.cpp -DFOLDER=lcmtypes -DTYPES=a_t,b_t -P write_lcm_texts.cmake: the files' texts as a C++ source.
+string(REPLACE "," ";" types "${TYPES}")
+set(source "#include \"lcmtypes/describe/lcm_texts.h\"\n\nnamespace sgraphs {\nnamespace {\n\n")
+string(APPEND source "constexpr std::string_view kTexts[] = {\n")
+foreach(type IN LISTS types)
+  file(READ ${FOLDER}/${type}.lcm text)
+  string(APPEND source "    R\"lcm(${text})lcm\",\n")
+endforeach()
+string(APPEND source "};\n\n}  // namespace\n\nstd::span<const std::string_view> lcmTexts() {\n  return kTexts;\n}\n\n}  // namespace sgraphs\n")
+file(WRITE ${OUTPUT} "${source}")
