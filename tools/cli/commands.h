@@ -16,6 +16,7 @@ void addReplay(CLI::App& app);
 void addEval(CLI::App& app);
 void addLog(CLI::App& app);
 void addBench(CLI::App& app);
+void addSend(CLI::App& app);
 void addReserved(CLI::App& app);
 
 }  // namespace sgraphs::cli

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   cli::addEval(app);
   cli::addLog(app);
   cli::addBench(app);
+  cli::addSend(app);
   cli::addReserved(app);
   try {
     app.parse(argc, argv);

@@ -1,10 +1,7 @@
 #include "tools/system/process.h"
 
-#include <signal.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -15,6 +12,7 @@
 #include "common/base/error.h"
 #include "common/base/performance.h"
 #include "common/types/session.h"
+#include "tools/system/stop_signals.h"
 
 namespace sgraphs {
 namespace {
@@ -23,37 +21,19 @@ constexpr double kEndOverdue_s = 30;
 constexpr double kAwaitedOverdue_s = 10;
 constexpr int kPoll_ms = 100;
 
-sigset_t stopSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  return signals;
-}
-
-// SIGINT and SIGTERM, blocked by runProcess, as a question instead of an interruption.
-class SignalWatch {
- public:
-  SignalWatch() {
-    const sigset_t signals = stopSignals();
-    file_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
-  }
-  ~SignalWatch() { close(file_); }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
-
-  bool stopRequested() {
-    signalfd_siginfo info{};
-    return read(file_, &info, sizeof info) == static_cast<ssize_t>(sizeof info);
-  }
-
- private:
-  int file_ = -1;
-};
-
 int failed(const std::string& name, const std::exception& e, int code) {
   std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
   return code;
+}
+
+void addStageOptions(CLI::App& app, ProcessSetup& setup, int& threads) {
+  app.add_option("--threads", threads, "Worker threads; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--odometry", setup.odometry, "lidar, encoder or fused in place of SESSION's choice");
+  app.add_flag("--stay", setup.stay, "Do not exit when the stream has ended");
+  app.add_option("--end-after-silence", setup.end_after_silence_s,
+                 "End the stream after so many seconds without a message; 0: never")
+      ->check(CLI::NonNegativeNumber);
 }
 
 }  // namespace
@@ -72,15 +52,10 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   app.add_option("--lcm-url", setup.lcm_url, "LCM provider; default: $LCM_DEFAULT_URL, else LCM's own");
   app.add_option("--config", config_file, "YAML file of settings");
   app.add_option("--set", assignments, "One setting, section.key=value; may be repeated");
-  app.add_option("--threads", threads, "Worker threads; the result does not depend on it")
-      ->check(CLI::Range(1, 64));
-  app.add_option("--odometry", setup.odometry, "lidar, encoder or fused in place of SESSION's choice");
-  app.add_flag("--stay", setup.stay, "Do not exit when the stream has ended");
-  app.add_option("--end-after-silence", setup.end_after_silence_s,
-                 "End the stream after so many seconds without a message; 0: never")
-      ->check(CLI::NonNegativeNumber);
+  if (text.stage) addStageOptions(app, setup, threads);
   bool print_config = false;
   app.add_flag("--print-config", print_config, "Print the configuration in force and exit");
+  if (text.add_options) text.add_options(app);
   if (text.writes_output) app.add_option("-o,--output", setup.output_dir, "Folder to write the result to");
   try {
     app.parse(argc, argv);
@@ -89,8 +64,7 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   }
   try {
     // Before any other thread exists, so that all of them inherit it.
-    const sigset_t signals = stopSignals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    blockStopSignals();
     if (!config_file.empty()) loadConfigFile(visitOf(setup.config), config_file);
     for (const std::string& assignment : assignments) setConfigValue(visitOf(setup.config), assignment);
     if (threads > 0) setup.config.odometry.threads = threads;
@@ -108,14 +82,14 @@ int runProcess(const ProcessText& text, int argc, char** argv,
 }
 
 void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
-  SignalWatch signals;
+  StopSignals signals;
   Stopwatch status, silence, overdue, waiting;
   int64_t awaited = -1;
   bool heard = false;
   hooks.publish_status();
   spdlog::info("listening");
   while (!hooks.done() || setup.stay) {
-    if (signals.stopRequested()) {
+    if (signals.requested()) {
       hooks.finish("stopped by a signal");
       break;
     }

@@ -7,6 +7,10 @@
 #include "common/bus/bus.h"
 #include "tools/system/system_config.h"
 
+namespace CLI {
+class App;
+}
+
 namespace sgraphs {
 
 // What a stage's process is started with.
@@ -22,6 +26,8 @@ struct ProcessSetup {
 struct ProcessText {
   std::string name, purpose, example;
   bool writes_output = false;
+  bool stage = true;                                     // has the options of a stage
+  std::function<void(CLI::App&)> add_options = nullptr;  // of this program alone
 };
 
 // Reads the command line and runs `body`; errors become one line on stderr and the contract's exit code.

@@ -2,6 +2,7 @@
 
 #include "backend/backend_config.h"
 #include "common/config/config_io.h"
+#include "drivers/driver_config.h"
 #include "perception/free_space/free_space_config.h"
 #include "perception/odometry/odometry_config.h"
 #include "perception/planes/planes_config.h"
@@ -16,8 +17,15 @@ struct SystemConfig {
   FreeSpaceConfig free_space;
   RoomsConfig rooms;
   BackendConfig backend;
+  DriverConfig drivers;
 
   void visit(ConfigVisitor& v) {
+    visitStages(v);
+    v.section("drivers", drivers, "The outside world on a robot: what is recorded, not what is made of it");
+  }
+
+  // What a result depends on.
+  void visitStages(ConfigVisitor& v) {
     v.section("odometry", odometry, "Scans to poses and keyframes");
     v.section("planes", planes, "Keyframe clouds to planes");
     v.section("free_space", free_space, "Keyframe clouds and the optimised map to free space");
@@ -26,10 +34,11 @@ struct SystemConfig {
   }
 };
 
-// Identity of a configuration: all keys and values but the number of threads, which changes no result.
+// Identity of a configuration: all keys and values of the stages but the number of threads, which changes no
+// result.
 inline std::string digestOf(SystemConfig config) {
   config.odometry.threads = OdometryConfig{}.threads;
-  return configDigest(visitOf(config));
+  return configDigest([&config](ConfigVisitor& v) { config.visitStages(v); });
 }
 
 }  // namespace sgraphs
