@@ -13,8 +13,8 @@
 namespace sgraphs {
 
 // Writes a log that is complete by itself: SESSION first and at 1 Hz, the raw channels in time order,
-// STREAM_END last. Items are added in order of time. Packets are collected into messages by PacketGrouper, and
-// written at the time of their last firing.
+// STREAM_END last. Items are added in order of time. Packets are collected into messages by PacketGrouper,
+// and written at the time of their last firing.
 class RecordingWriter {
  public:
   // session.id must not be 0; session.start is the time of the first item.

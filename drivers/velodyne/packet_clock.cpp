@@ -45,8 +45,7 @@ Duration ClockOffsetFilter::step(Time sensor, Duration difference) {
     if (minima_us_.size() > kBlocks) minima_us_.pop_front();
   }
   minima_us_.back() = std::min(minima_us_.back(), difference.us);
-  const auto envelope_us =
-      static_cast<double>(*std::min_element(minima_us_.begin(), minima_us_.end()));
+  const auto envelope_us = static_cast<double>(*std::min_element(minima_us_.begin(), minima_us_.end()));
   const double elapsed_s = (sensor - previous_).seconds();
   const double most_us = 1e6 * kMaxSlew * elapsed_s;
   const double share = std::min(1.0, elapsed_s / kFollow_s);

@@ -122,20 +122,22 @@ void LivePackets::takePosition(const UdpDatagram& datagram) {
 
 void LivePackets::refuse(const UdpDatagram& datagram, PacketFault fault) {
   counts_.reject(fault);
-  std::string text = std::string("a packet from ") + toString(datagram.source_address) + " is refused: " +
-                     toString(fault);
+  std::string text =
+      std::string("a packet from ") + toString(datagram.source_address) + " is refused: " + toString(fault);
   if (fault == PacketFault::kWrongSize) text += " but " + std::to_string(datagram.payload.size());
   if (fault == PacketFault::kThirtyTwoBeams)
-    text = toString(datagram.source_address) +
-           " is a 32-beam sensor (HDL-32E or VLP-32C, by the rhythm of its packets): only VLP-16s are read, " +
-           "all its packets are refused";
+    text =
+        toString(datagram.source_address) +
+        " is a 32-beam sensor (HDL-32E or VLP-32C, by the rhythm of its packets): only VLP-16s are read, " +
+        "all its packets are refused";
   notices_.add(toString(fault), text);
 }
 
 void LivePackets::noteClock() {
   if (clock_.sensorJumps() > noted_sensor_jumps_)
-    notices_.add("sensor clock", "the sensor's clock was set anew (restart, or GPS found): its stamps are "
-                                 "carried on without a step back");
+    notices_.add("sensor clock",
+                 "the sensor's clock was set anew (restart, or GPS found): its stamps are "
+                 "carried on without a step back");
   if (clock_.hostJumps() > noted_host_jumps_)
     notices_.add("host clock", "the host's clock was set by more than a second: a step back is not followed");
   noted_sensor_jumps_ = clock_.sensorJumps();

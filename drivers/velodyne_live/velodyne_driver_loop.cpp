@@ -31,10 +31,11 @@ Input listen(const VelodyneDriverConfig& config) {
   options.receive_buffer_bytes = config.receive_buffer_bytes;
   auto receiver = std::make_unique<UdpReceiver>(options);
   if (receiver->grantedBuffer_bytes() < config.receive_buffer_bytes)
-    spdlog::warn("asked for a receive buffer of {} bytes, the kernel gave {} ({:.2f} s of a VLP-16): "
-                 "sysctl -w net.core.rmem_max={}",
-                 config.receive_buffer_bytes, receiver->grantedBuffer_bytes(),
-                 receiver->grantedBuffer_bytes() / 1.0e6, config.receive_buffer_bytes);
+    spdlog::warn(
+        "asked for a receive buffer of {} bytes, the kernel gave {} ({:.2f} s of a VLP-16): "
+        "sysctl -w net.core.rmem_max={}",
+        config.receive_buffer_bytes, receiver->grantedBuffer_bytes(), receiver->grantedBuffer_bytes() / 1.0e6,
+        config.receive_buffer_bytes);
   const std::vector<uint16_t> ports = receiver->ports();
   spdlog::info("UDP ports {} (data) and {} (position)", ports[0], ports[1]);
   return {std::move(receiver), ports[0], ports[1]};
@@ -70,7 +71,8 @@ int runVelodyneDriver(const ProcessText& text, const ProcessSetup& setup,
   DatagramSource& source = *input.source;
   std::optional<Session> session;
   if (!options.no_session) {
-    session = liveSession(config.session, text.name + " " SGRAPHS_VERSION, digestOf(setup.config), source.now());
+    session =
+        liveSession(config.session, text.name + " " SGRAPHS_VERSION, digestOf(setup.config), source.now());
     // Ids are of the instant of starting, also where an old capture's clock is kept.
     session->id = hostClock().us;
   }
@@ -94,7 +96,8 @@ int runVelodyneDriver(const ProcessText& text, const ProcessSetup& setup,
   node.everySecond(second.elapsedSeconds(), source.now(), source.health());
   say(node);
   report(node);
-  return leaveAfterEnd(text, [&node] { node.repeatEnd(); }, "");
+  return leaveAfterEnd(
+      text, [&node] { node.repeatEnd(); }, "");
 }
 
 }  // namespace sgraphs

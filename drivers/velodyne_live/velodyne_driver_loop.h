@@ -11,9 +11,9 @@ struct VelodyneDriverOptions {
   bool no_session = false;  // another program is the session's source
   // STREAM_END at the end: by default where this program is the session's source.
   bool stream_end = false, no_stream_end = false;
-  std::string pcap;         // empty: the network
+  std::string pcap;  // empty: the network
   double rate = 1;
-  std::string epoch;     // "now" moves the capture's clock; empty keeps it
+  std::string epoch;       // "now" moves the capture's clock; empty keeps it
   double end_after_s = 0;  // 0: never
 };
 

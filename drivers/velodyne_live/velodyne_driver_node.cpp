@@ -80,7 +80,8 @@ void VelodyneDriverNode::publishGroup(const PacketGroup& group) {
 }
 
 void VelodyneDriverNode::everySecond(double elapsed_s, Time now, const DatagramSource::Health& health) {
-  const int64_t fresh = packets_.counts().accepted - std::exchange(counted_packets_, packets_.counts().accepted);
+  const int64_t fresh =
+      packets_.counts().accepted - std::exchange(counted_packets_, packets_.counts().accepted);
   rate_hz_ = elapsed_s > 0 ? static_cast<double>(fresh) / elapsed_s : 0.0;
   const bool was_silent = silent();
   quiet_s_ = fresh > 0 ? 0.0 : quiet_s_ + elapsed_s;

@@ -47,9 +47,10 @@ class VelodyneDriverTest : public ::testing::Test {
   test::LogContents live(const std::string& name, const std::string& options) {
     const fs::path out = folder / name;
     std::string said;
-    const int code = shell("sh '" SGRAPHS_SOURCE_DIR "/tests/integration/live_driver.sh' '" SGRAPHS_BINARY_DIR
-                           "' " + quoted(log) + " " + quoted(out) + " " + options,
-                           said);
+    const int code =
+        shell("sh '" SGRAPHS_SOURCE_DIR "/tests/integration/live_driver.sh' '" SGRAPHS_BINARY_DIR "' " +
+                  quoted(log) + " " + quoted(out) + " " + options,
+              said);
     driver_said = readAll(out / "driver.txt");
     sender_said = readAll(out / "sender.txt");
     EXPECT_EQ(code, 0) << said << driver_said << sender_said;
@@ -94,12 +95,14 @@ class VelodyneDriverTest : public ::testing::Test {
 fs::path VelodyneDriverTest::folder, VelodyneDriverTest::log;
 
 TEST_F(VelodyneDriverTest, ACapturePlayedIntoALogReplaysLikeAConvertedOne) {
-  const fs::path capture =
-      SGRAPHS_SHARED_DATA_DIR "/vlp16/veloview_vlp-16-test-90deg-1-50-frames.pcap";
+  const fs::path capture = SGRAPHS_SHARED_DATA_DIR "/vlp16/veloview_vlp-16-test-90deg-1-50-frames.pcap";
   if (!fs::exists(capture)) GTEST_SKIP() << "shared data absent: " << capture;
   const fs::path converted = folder / "converted.lcmlog", played = folder / "played.lcmlog";
   std::string said;
-  ASSERT_EQ(shell(SGRAPHS_BINARY_DIR "/sgraphs convert --pcap " + quoted(capture) + " -o " + quoted(converted), said), 0)
+  ASSERT_EQ(
+      shell(SGRAPHS_BINARY_DIR "/sgraphs convert --pcap " + quoted(capture) + " -o " + quoted(converted),
+            said),
+      0)
       << said;
   ASSERT_EQ(shell(SGRAPHS_BINARY_DIR "/sgraphs-velodyne-driver --pcap " + quoted(capture) +
                       " --rate 0 --lcm-url 'file://" + played.string() + "?mode=w'",
@@ -115,7 +118,9 @@ TEST_F(VelodyneDriverTest, ACapturePlayedIntoALogReplaysLikeAConvertedOne) {
     EXPECT_EQ(a.packets[i].part, b.packets[i].part);
     EXPECT_EQ(a.packets[i].last_part, b.packets[i].last_part);
   }
-  EXPECT_EQ(shell(SGRAPHS_BINARY_DIR "/sgraphs replay " + quoted(played) + " -o " + quoted(folder / "out"), said), 0)
+  EXPECT_EQ(
+      shell(SGRAPHS_BINARY_DIR "/sgraphs replay " + quoted(played) + " -o " + quoted(folder / "out"), said),
+      0)
       << said;
 }
 
@@ -134,13 +139,14 @@ TEST_F(VelodyneDriverTest, PacketsOverTheNetworkArriveInOrderAndInTheSameGroups)
 }
 
 TEST_F(VelodyneDriverTest, AFaultyNetworkIsSurvivedAndCounted) {
-  const test::LogContents heard = live(
-      "faulty", "--rate 4 --seed 5 --loss 0.05 --duplicates 0.05 --reorder 0.05 --garbage 0.1");
+  const test::LogContents heard =
+      live("faulty", "--rate 4 --seed 5 --loss 0.05 --duplicates 0.05 --reorder 0.05 --garbage 0.1");
   expectWholeLog(heard);
   const int64_t sent = saidBySender("data packets"), lost = saidBySender("lost"),
                 garbage = saidBySender("datagrams of garbage");
   ASSERT_GT(sent, 0) << sender_said;
-  const int64_t accepted = rowOf("udp data", &status_t::count), refused = rowOf("udp data", &status_t::rejected);
+  const int64_t accepted = rowOf("udp data", &status_t::count),
+                refused = rowOf("udp data", &status_t::rejected);
   EXPECT_EQ(accepted + refused, sent + garbage) << driver_said;
   EXPECT_EQ(rowOf("refused: not 1206 bytes", &status_t::rejected) +
                 std::max<int64_t>(0, rowOf("refused: wrong block flag", &status_t::rejected)),
@@ -164,7 +170,8 @@ TEST_F(VelodyneDriverTest, AnswersWrongUsageInOneLine) {
   EXPECT_EQ(shell(program + " --help", said), 0);
   EXPECT_EQ(shell(program + " --set drivers.velodyne_driver.stamps=gps", said), 2);
   EXPECT_NE(said.find("must be one of auto, host, device"), std::string::npos) << said;
-  EXPECT_EQ(shell(program + " --set drivers.velodyne_driver.source_address=lidar --lcm-url memq://", said), 2);
+  EXPECT_EQ(shell(program + " --set drivers.velodyne_driver.source_address=lidar --lcm-url memq://", said),
+            2);
   EXPECT_EQ(shell(program + " --pcap " + quoted(log) + " --lcm-url memq://", said), 1);
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   EXPECT_EQ(shell(SGRAPHS_BINARY_DIR "/sgraphs send-packets /nowhere.pcap", said), 1);

@@ -145,7 +145,8 @@ void run(const Arguments& arguments) {
   sensor.finish();
   const simulate::FaultCounts& counts = sensor.counts();
   std::printf(
-      "%s: %lld data packets and %lld position packets sent in %.1f s; %lld lost, %lld duplicated, %lld pairs "
+      "%s: %lld data packets and %lld position packets sent in %.1f s; %lld lost, %lld duplicated, %lld "
+      "pairs "
       "reordered, %lld corrupted, %lld datagrams of garbage\n",
       arguments.to.c_str(), static_cast<long long>(sensor.sent()), static_cast<long long>(position),
       watch.elapsedSeconds(), static_cast<long long>(counts.lost), static_cast<long long>(counts.duplicated),

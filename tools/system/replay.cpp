@@ -169,6 +169,9 @@ RunRecord Replay::record() const {
   add("planes", *planes_);
   add("free_space", *free_space_);
   add("rooms", *rooms_);
+  if (const auto clock = odometry_->legsClock())
+    record.legs_clock = RunRecord::LegsClock{1e3 * clock->offset_s, 1e3 * clock->sigma_s,
+                                             1e3 * odometry_->legsClockInForce().seconds()};
   if (counts_->lost_packets > 0) record.gaps["lidar_packets"] = counts_->lost_packets;
   return record;
 }

@@ -41,8 +41,7 @@ TEST(PositionPacketTest, ReadsSentencePulseAndStamp) {
 }
 
 TEST(PositionPacketTest, AReceiverWithoutFixOrDateIsNoTime) {
-  const auto packet =
-      parsePositionPacket(packetWith(withChecksum("GPRMC,183015,V,,,,,,,,,,N"), 1));
+  const auto packet = parsePositionPacket(packetWith(withChecksum("GPRMC,183015,V,,,,,,,,,,N"), 1));
   ASSERT_TRUE(packet);
   EXPECT_FALSE(packet->fix);
   EXPECT_FALSE(packet->utc);

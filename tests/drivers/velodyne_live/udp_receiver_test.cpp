@@ -20,8 +20,7 @@ namespace {
 using testing::HasSubstr;
 
 constexpr uint32_t kLoopback = 0x7F000001;
-const std::string kCapture =
-    SGRAPHS_SHARED_DATA_DIR "/vlp16/veloview_vlp-16-test-90deg-1-50-frames.pcap";
+const std::string kCapture = SGRAPHS_SHARED_DATA_DIR "/vlp16/veloview_vlp-16-test-90deg-1-50-frames.pcap";
 
 UdpOptions loopback() {
   UdpOptions options;
@@ -108,7 +107,8 @@ TEST(UdpReceiverTest, AFullQueueDropsTheNewestAndCounts) {
   const size_t sent = UdpReceiver::kMaxWaiting + 500;
   size_t i = 0;
   for (; i < sent; ++i) {
-    sender.send(receiver.ports()[0], std::vector<uint8_t>{static_cast<uint8_t>(i), static_cast<uint8_t>(i >> 8)});
+    sender.send(receiver.ports()[0],
+                std::vector<uint8_t>{static_cast<uint8_t>(i), static_cast<uint8_t>(i >> 8)});
     // Let the thread keep up: the kernel's buffer is not what is tested here.
     while (receiver.health().waiting + static_cast<size_t>(receiver.health().dropped_by_queue) +
                static_cast<size_t>(receiver.health().dropped_by_kernel) <
@@ -136,7 +136,8 @@ TEST(UdpReceiverTest, TwoProgramsMayListenOnOnePort) {
 TEST(UdpReceiverTest, WhatCannotBeHadIsSaidInOneLine) {
   UdpOptions options = loopback();
   options.bind_address = "203.0.113.1";
-  EXPECT_THAT(test::messageOf<Error>([&] { UdpReceiver receiver(options); }), HasSubstr("cannot listen on UDP port"));
+  EXPECT_THAT(test::messageOf<Error>([&] { UdpReceiver receiver(options); }),
+              HasSubstr("cannot listen on UDP port"));
   options.bind_address = "nowhere";
   EXPECT_THAT(test::messageOf<UsageError>([&] { UdpReceiver receiver(options); }),
               HasSubstr("bind_address 'nowhere'"));

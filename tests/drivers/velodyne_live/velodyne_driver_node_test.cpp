@@ -28,11 +28,14 @@ class Heard {
  public:
   explicit Heard(Bus& bus) {
     const auto fail = [] { ADD_FAILURE() << "undecodable"; };
-    subscribe(bus, channels::kSession, [this](const session_t& m) { sessions.push_back(m); }, fail);
-    subscribe(bus, channels::kVelodynePackets, [this](const velodyne_packets_t& m) { packets.push_back(m); },
-              fail);
-    subscribe(bus, channels::kStatusVelodyneDriver, [this](const status_t& m) { status.push_back(m); }, fail);
-    subscribe(bus, channels::kStreamEnd, [this](const stream_end_t& m) { ends.push_back(m); }, fail);
+    subscribe(
+        bus, channels::kSession, [this](const session_t& m) { sessions.push_back(m); }, fail);
+    subscribe(
+        bus, channels::kVelodynePackets, [this](const velodyne_packets_t& m) { packets.push_back(m); }, fail);
+    subscribe(
+        bus, channels::kStatusVelodyneDriver, [this](const status_t& m) { status.push_back(m); }, fail);
+    subscribe(
+        bus, channels::kStreamEnd, [this](const stream_end_t& m) { ends.push_back(m); }, fail);
   }
   std::vector<session_t> sessions;
   std::vector<velodyne_packets_t> packets;
@@ -142,8 +145,7 @@ TEST_F(DriverNodeTest, SessionComesFirstAndWithEveryCall) {
   EXPECT_EQ(heard_.ends[0].header.seq, heard_.ends[1].header.seq);
   EXPECT_EQ(heard_.ends[0].why_not, "because");
   EXPECT_THAT(heard_.ends[0].channel, ElementsAre("SESSION", "VELODYNE_PACKETS"));
-  EXPECT_THAT(heard_.ends[0].last_seq,
-              ElementsAre(1, static_cast<int64_t>(heard_.packets.size()) - 1));
+  EXPECT_THAT(heard_.ends[0].last_seq, ElementsAre(1, static_cast<int64_t>(heard_.packets.size()) - 1));
 }
 
 TEST_F(DriverNodeTest, WithoutASessionOfItsOwnItWaitsForOne) {
@@ -182,7 +184,8 @@ TEST_F(DriverNodeTest, StatusTellsRateLossAndSilence) {
   std::vector<uint8_t> position(512);
   position[202] = 2;
   node.take(stream.datagram(position, SensorStream::kPositionPort));
-  node.everySecond(1.0, Time{SensorStream::kHour_us}, {.dropped_by_kernel = 2, .dropped_by_queue = 0, .waiting = 5});
+  node.everySecond(1.0, Time{SensorStream::kHour_us},
+                   {.dropped_by_kernel = 2, .dropped_by_queue = 0, .waiting = 5});
   bus_.dispatch(0);
   const status_t& running = heard_.status.back();
   EXPECT_EQ(running.state, "running: 754.0 packets/s, stamps device, GPS pulse locked, no fix");
@@ -196,8 +199,10 @@ TEST_F(DriverNodeTest, StatusTellsRateLossAndSilence) {
   EXPECT_EQ(rowOf(running, "dropped by the kernel").lost, 2);
   EXPECT_THAT(node.takeNotices(), Contains(HasSubstr("2 packet(s) dropped by this machine")));
 
-  node.everySecond(1.0, Time{SensorStream::kHour_us}, {.dropped_by_kernel = 2, .dropped_by_queue = 0, .waiting = 0});
-  node.everySecond(1.0, Time{SensorStream::kHour_us}, {.dropped_by_kernel = 2, .dropped_by_queue = 0, .waiting = 0});
+  node.everySecond(1.0, Time{SensorStream::kHour_us},
+                   {.dropped_by_kernel = 2, .dropped_by_queue = 0, .waiting = 0});
+  node.everySecond(1.0, Time{SensorStream::kHour_us},
+                   {.dropped_by_kernel = 2, .dropped_by_queue = 0, .waiting = 0});
   bus_.dispatch(0);
   EXPECT_EQ(heard_.status.back().state, "silent: no LiDAR for 2.0 s");
   const auto notices = node.takeNotices();
