@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # Programs for the user, and one process per stage.
-install(TARGETS sgraphs sgraphs_odometry_process sgraphs_planes_process sgraphs_free_space_process
+install(TARGETS sgraphs sgraphs_velodyne_driver_process sgraphs_odometry_process sgraphs_planes_process sgraphs_free_space_process
   sgraphs_rooms_process sgraphs_loops_process sgraphs_backend_process sgraphs_spot_bridge_process
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 install(FILES config/sgraphs.yaml DESTINATION ${CMAKE_INSTALL_DATADIR}/sgraphs COMPONENT runtime)

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ struct RunRecord {
   double peak_rss_mib = 0;
   std::map<std::string, StageTiming> stages;
   std::map<std::string, int64_t> gaps;  // messages lost per channel
+  // The legs' clock against the LiDAR's, as far as it was estimated here.
+  struct LegsClock {
+    double offset_ms = 0, sigma_ms = 0, in_force_ms = 0;
+  };
+  std::optional<LegsClock> legs_clock;
 };
 
 // Writes every file of OUT (contract.md): trajectory.tum, keyframes.tum,

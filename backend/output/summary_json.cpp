@@ -56,6 +56,9 @@ std::string summaryJson(const RunRecord& record) {
     json["factors"][kind] = {{"count", f.count}, {"dof", f.dof}, {"chi2", f.chi2}};
   json["gaps"] = Json::object();
   for (const auto& [channel, count] : record.gaps) json["gaps"][channel] = count;
+  if (const auto& clock = record.legs_clock)
+    json["legs_clock"] = {
+        {"offset_ms", clock->offset_ms}, {"sigma_ms", clock->sigma_ms}, {"in_force_ms", clock->in_force_ms}};
   return json.dump(2) + "\n";
 }
 

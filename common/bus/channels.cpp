@@ -29,6 +29,7 @@ constexpr std::array kTable{
     Row{"MAP_TO_ODOM", "map_to_odom_t", "sgraphs-backend", "per round", false},
     Row{"POSE", "pose_t", "sgraphs-backend", "10 Hz", false},
     Row{"RUN_RESULT", "run_result_t", "sgraphs-backend", "once", false},
+    Row{"STATUS_VELODYNE_DRIVER", "status_t", "sgraphs-velodyne-driver", "1 Hz", false},
     Row{"STATUS_ODOMETRY", "status_t", "sgraphs-odometry", "1 Hz", false},
     Row{"STATUS_PLANES", "status_t", "sgraphs-planes", "1 Hz", false},
     Row{"STATUS_FREE_SPACE", "status_t", "sgraphs-free-space", "1 Hz", false},

@@ -48,6 +48,7 @@ inline constexpr Channel<map_chunk_t> kMapChunk{"MAP_CHUNK"};
 inline constexpr Channel<map_to_odom_t> kMapToOdom{"MAP_TO_ODOM"};
 inline constexpr Channel<pose_t> kPose{"POSE"};
 inline constexpr Channel<run_result_t> kRunResult{"RUN_RESULT"};
+inline constexpr Channel<status_t> kStatusVelodyneDriver{"STATUS_VELODYNE_DRIVER"};
 inline constexpr Channel<status_t> kStatusOdometry{"STATUS_ODOMETRY"};
 inline constexpr Channel<status_t> kStatusPlanes{"STATUS_PLANES"};
 inline constexpr Channel<status_t> kStatusFreeSpace{"STATUS_FREE_SPACE"};

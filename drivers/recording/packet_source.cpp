@@ -6,13 +6,9 @@
 #include <iterator>
 
 #include "common/base/error.h"
+#include "drivers/velodyne/position_packet.h"
 
 namespace sgraphs {
-namespace {
-
-constexpr size_t kPositionPacketBytes = 512;
-
-}  // namespace
 
 std::optional<VelodynePacket> PacketSource::accept(std::span<const uint8_t> payload,
                                                    std::optional<Time> arrived,
@@ -33,13 +29,10 @@ std::optional<VelodynePacket> PacketSource::accept(std::span<const uint8_t> payl
                 "' is of a 32-beam sensor (its packets follow each other faster than a VLP-16's " +
                 "1327 or 664 us): only VLP-16 packets can be converted");
   if (fault != PacketFault::kNone) {
-    ++counts_.rejected[static_cast<size_t>(fault)];
+    counts_.reject(fault);
     return std::nullopt;
   }
-  ++counts_.accepted;
-  counts_.lost = monitor_.lost();
-  counts_.repaired_azimuths += packet.repaired_azimuths;
-  counts_.undefined_factory_bytes += !packet.factory_bytes_defined;
+  counts_.accept(packet, monitor_.lost());
   VelodynePacket out;
   out.time = time;
   std::copy(payload.begin(), payload.end(), out.bytes.begin());

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -8,22 +7,12 @@
 #include <vector>
 
 #include "drivers/recording/pcap_reader.h"
+#include "drivers/velodyne/packet_counts.h"
 #include "drivers/velodyne/packet_monitor.h"
 #include "drivers/velodyne/stamp_resolver.h"
 #include "lcmtypes/convert/convert.h"
 
 namespace sgraphs {
-
-struct PacketCounts {
-  int64_t accepted = 0;
-  std::array<int64_t, kNumPacketFaults> rejected{};  // by PacketFault
-  int64_t other_sensor = 0;                          // data packets of a second sensor's address
-  int64_t position = 0;                              // position packets
-  int64_t other_datagrams = 0;
-  int64_t lost = 0;
-  int64_t repaired_azimuths = 0;
-  int64_t undefined_factory_bytes = 0;
-};
 
 // The packets of one recorded VLP-16, checked, with their instants. Refused packets are left out and counted.
 class PacketSource {

@@ -4,21 +4,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "common/base/time.h"
+#include "common/types/udp_datagram.h"
 
 struct pcap;
 
 namespace sgraphs {
-
-// One UDP datagram over IPv4.
-struct UdpDatagram {
-  Time captured;
-  uint32_t source_address = 0;
-  uint16_t destination_port = 0;
-  std::vector<uint8_t> payload;
-};
 
 // Frames of a capture by what became of them.
 struct PcapCounts {

@@ -10,8 +10,6 @@
 namespace sgraphs {
 namespace {
 
-// 20 packets are 25 kB and 26 ms: one datagram, and four messages per revolution at 600 rpm.
-constexpr size_t kMaxPacketsPerMessage = 20;
 constexpr Duration kSessionInterval{1'000'000};
 constexpr Duration kMaxFilledGap{10'000'000};
 
@@ -52,20 +50,14 @@ header_t RecordingWriter::header(const std::string& channel, Time time) {
 }
 
 void RecordingWriter::addPacket(const VelodynePacket& packet) {
-  pending_.push_back(packet);
-  const bool cut = cutter_.step(packet.bytes) >= 0;
-  if (cut || pending_.size() == kMaxPacketsPerMessage) flushPackets(cut);
+  if (const auto group = grouper_.step(packet)) writePackets(*group);
 }
 
-void RecordingWriter::flushPackets(bool last_part) {
-  if (pending_.empty()) return;
-  tick(lastFiring(pending_.back()));
-  velodyne_packets_t message = toMessage(pending_, revolution_, part_, last_part);
-  message.header = header(channels::kVelodynePackets.name, pending_.front().time);
+void RecordingWriter::writePackets(const PacketGroup& group) {
+  tick(lastFiring(group.packets.back()));
+  velodyne_packets_t message = toMessage(group.packets, group.revolution, group.part, group.last_part);
+  message.header = header(channels::kVelodynePackets.name, group.packets.front().time);
   write(log_, now_.us, channels::kVelodynePackets, message);
-  pending_.clear();
-  revolution_ += last_part;
-  part_ = last_part ? 0 : part_ + 1;
 }
 
 void RecordingWriter::addScan(const LidarScan& scan) {
@@ -84,7 +76,7 @@ void RecordingWriter::addOdometry(const BodyOdometry& odometry, Time arrived) {
 }
 
 void RecordingWriter::finish() {
-  flushPackets(false);
+  if (const auto group = grouper_.flush()) writePackets(*group);
   stream_end_t message{};
   for (const auto& [channel, next] : next_seq_) {
     message.channel.push_back(channel);

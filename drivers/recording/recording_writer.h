@@ -7,14 +7,14 @@
 #include "common/bus/log_file.h"
 #include "common/types/lidar_scan.h"
 #include "common/types/session.h"
-#include "drivers/velodyne/revolution_cutter.h"
+#include "drivers/velodyne/packet_grouper.h"
 #include "lcmtypes/convert/convert.h"
 
 namespace sgraphs {
 
 // Writes a log that is complete by itself: SESSION first and at 1 Hz, the raw channels in time order,
-// STREAM_END last. Items are added in order of time. Packets are collected into messages of at most 20,
-// closed with the packet that holds a revolution's cut, and written at the time of their last firing.
+// STREAM_END last. Items are added in order of time. Packets are collected into messages by PacketGrouper,
+// and written at the time of their last firing.
 class RecordingWriter {
  public:
   // session.id must not be 0; session.start is the time of the first item.
@@ -30,17 +30,14 @@ class RecordingWriter {
 
  private:
   void tick(Time now);
-  void flushPackets(bool last_part);
+  void writePackets(const PacketGroup& group);
   header_t header(const std::string& channel, Time time);
 
   LogWriter& log_;
   Session session_;
   Time next_session_;
   Time now_;
-  RevolutionCutter cutter_;
-  std::vector<VelodynePacket> pending_;
-  int64_t revolution_ = 0;
-  int32_t part_ = 0;
+  PacketGrouper grouper_;
   std::map<std::string, int64_t> next_seq_;
 };
 

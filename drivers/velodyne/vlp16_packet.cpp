@@ -99,6 +99,8 @@ const char* toString(PacketFault fault) {
       return "32-beam sensor";
     case PacketFault::kOutOfOrder:
       return "repeated or out of order";
+    case PacketFault::kStrayStamp:
+      return "stamp far from those around it";
   }
   return "unknown";
 }

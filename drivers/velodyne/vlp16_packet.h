@@ -31,8 +31,9 @@ enum class PacketFault {
   kNoAzimuth,
   kThirtyTwoBeams,
   kOutOfOrder,
+  kStrayStamp,
 };
-inline constexpr int kNumPacketFaults = 7;
+inline constexpr int kNumPacketFaults = 8;
 const char* toString(PacketFault fault);
 
 // A packet that was accepted. It looks into the bytes it was parsed from.

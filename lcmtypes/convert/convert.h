@@ -9,6 +9,7 @@
 #include "common/types/lidar_scan.h"
 #include "common/types/plane.h"
 #include "common/types/session.h"
+#include "common/types/velodyne_packet.h"
 #include "sgraphs/graph_plane_t.hpp"
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
@@ -30,7 +31,6 @@ namespace sgraphs {
 
 // Most bytes of a chunked message's bulk, so that a message stays one datagram of at most 60 kB.
 inline constexpr int kMaxChunkBytes = 48000;
-inline constexpr int kVelodynePacketBytes = 1206;
 inline constexpr int kMaxVelodynePackets = 40;
 inline constexpr int32_t kMessageSchema = 1;
 
@@ -52,11 +52,6 @@ std::optional<OdometryEstimate> fromMessage(const odometry_t& message);
 // Pose of body in map or odom with the velocity of body.
 pose_t toPoseMessage(Time time, const SE3& T_world_body, const Vector6d& twist_body);
 
-// A raw packet and the instant of its first firing.
-struct VelodynePacket {
-  Time time;
-  std::array<uint8_t, kVelodynePacketBytes> bytes{};
-};
 velodyne_packets_t toMessage(std::span<const VelodynePacket> packets, int64_t revolution, int32_t part,
                              bool last_part);
 std::optional<std::vector<VelodynePacket>> fromMessage(const velodyne_packets_t& message);

@@ -88,6 +88,7 @@ void OdometryConfig::visit(ConfigVisitor& v) {
   v.section("surfels", surfels, "Planar patches of a scan");
   v.section("registration", registration, "Local map and registration");
   v.section("legs", legs, "Odometry of the legs as a measurement");
+  v.section("clock", clock, "Clock of the legs against the LiDAR's");
   v.section("keyframes", keyframes, "When a scan becomes a keyframe");
   v.section("covariance", covariance, "Calibration of covariances");
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/config/config_io.h"
+#include "perception/odometry/clock_offset.h"
 
 namespace sgraphs {
 
@@ -90,6 +91,7 @@ struct OdometryConfig {
   SurfelConfig surfels;
   RegistrationConfig registration;
   LegsConfig legs;
+  ClockOffsetConfig clock;
   KeyframeConfig keyframes;
   CovarianceConfig covariance;
 

@@ -53,6 +53,8 @@ void OdometryNode::onSession(const session_t& m) {
   publisher_.setSession(session_->id);
   first_time_ = newest_time_ = session_->start;
   queue_ = ScanQueue(mode_ != OdometryMode::kLidar);
+  // The legs alone hold nothing to compare them with.
+  if (mode_ == OdometryMode::kFused) clock_.emplace(parts_.clock);
   decode_ = parts_.make_decoder();
   step_ = parts_.make_step(mode_, session_->T_body_lidar);
 }
@@ -127,6 +129,7 @@ void OdometryNode::onSpotOdometry(const spot_odometry_t& m) {
                      ScanQueue::kPatience);
       return;
     case ScanQueue::Fate::kKept:
+      if (clock_) clock_->addLegs(*sample);
       workOff();
   }
 }
@@ -150,10 +153,12 @@ void OdometryNode::workOff() {
     const Stopwatch watch;
     const std::optional<OdometryOutput> output = step_(ready->scan, ready->odometry);
     step_latency_.add(watch.elapsedUs());
-    if (output)
+    if (output) {
       publishScan(*output);
-    else
+      followClock(output->estimate);
+    } else {
       ++oddities_["scans that could not be used"];
+    }
   }
 }
 
@@ -166,6 +171,30 @@ void OdometryNode::publishScan(const OdometryOutput& output) {
   publisher_.send(channels::kOdometry, message);
   publisher_.sendPlain(channels::kPoseOdom,
                        toPoseMessage(estimate.time, estimate.T_odom_body, estimate.twist_body));
+}
+
+// The offset changes between two scans, as a function of what came before the second.
+void OdometryNode::followClock(const OdometryEstimate& estimate) {
+  if (!clock_) return;
+  const Duration before = clock_->inForce();
+  clock_->addScan(estimate.time, estimate.T_odom_body, estimate.inlier_share >= 0 && !estimate.extrapolated);
+  if (clock_->inForce() == before) return;
+  spdlog::info(
+      "the legs' clock is {:+.1f} ms against the LiDAR's (+- {:.1f} ms): their stamps are corrected by it",
+      1e3 * clock_->inForce().seconds(), 1e3 * clock_->estimate()->sigma_s);
+  queue_.setClockOffset(clock_->inForce());
+}
+
+std::optional<ClockOffset::Estimate> OdometryNode::legsClock() const {
+  return clock_ ? clock_->estimate() : std::nullopt;
+}
+
+std::string OdometryNode::state() const {
+  const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
+  const std::optional<ClockOffset::Estimate> clock = legsClock();
+  if (!clock) return state;
+  return fmt::format("{}; legs' clock {:+.1f} ms (+- {:.1f}), {:+.1f} ms in force", state,
+                     1e3 * clock->offset_s, 1e3 * clock->sigma_s, 1e3 * legsClockInForce().seconds());
 }
 
 void OdometryNode::finish(const std::string& why_not) {
@@ -187,8 +216,7 @@ void OdometryNode::repeatEnd() {
 }
 
 void OdometryNode::publishStatus() {
-  const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
-  status_t status = makeStatus("sgraphs-odometry", state, gate_, publisher_, queue_.size(), step_latency_);
+  status_t status = makeStatus("sgraphs-odometry", state(), gate_, publisher_, queue_.size(), step_latency_);
   status.header.utime = newest_time_.us;
   publisher_.send(channels::kStatusOdometry, status);
 }

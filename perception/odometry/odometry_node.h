@@ -13,6 +13,7 @@
 #include "common/bus/input_gate.h"
 #include "common/bus/publisher.h"
 #include "lcmtypes/convert/convert.h"
+#include "perception/odometry/clock_offset.h"
 #include "perception/odometry/odometry.h"
 #include "perception/odometry/scan_queue.h"
 
@@ -25,6 +26,7 @@ struct OdometryParts {
   using Step = std::function<std::optional<OdometryOutput>(const LidarScan&, std::span<const BodyOdometry>)>;
   std::function<Decode()> make_decoder;
   std::function<Step(OdometryMode, const SE3& T_body_lidar)> make_step;
+  ClockOffsetConfig clock;
 };
 
 // Odometry on a bus: SESSION, VELODYNE_PACKETS or LIDAR_POINTS, SPOT_ODOMETRY, STREAM_END in; ODOMETRY,
@@ -56,6 +58,9 @@ class OdometryNode {
   Duration duration() const;                 // sensor time from the first to the last input
   Time now() const { return newest_time_; }  // newest sensor time seen
   int64_t scans() const { return scans_; }
+  // Of the legs' clock against the LiDAR's; nothing where it is not estimated (mode fused only), or not yet.
+  std::optional<ClockOffset::Estimate> legsClock() const;
+  Duration legsClockInForce() const { return clock_ ? clock_->inForce() : Duration{}; }
   // What went otherwise than planned without being lost or refused: kind -> count.
   const std::map<std::string, int64_t>& oddities() const { return oddities_; }
 
@@ -71,6 +76,8 @@ class OdometryNode {
   void addScan(const std::string& channel, LidarScan scan);
   void workOff();
   void publishScan(const OdometryOutput& output);
+  void followClock(const OdometryEstimate& estimate);
+  std::string state() const;
 
   Publisher publisher_;
   Bus& bus_;
@@ -83,6 +90,7 @@ class OdometryNode {
   OdometryParts::Decode decode_;
   OdometryParts::Step step_;
   ScanQueue queue_{false};
+  std::optional<ClockOffset> clock_;
   std::vector<lidar_points_t> sweep_;  // chunks so far of the sweep being assembled
   Time first_time_, newest_time_;
   Time newest_packet_;

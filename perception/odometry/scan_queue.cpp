@@ -3,6 +3,12 @@
 #include <utility>
 
 namespace sgraphs {
+namespace {
+
+// Samples this much older than needed stay, for an offset of the clocks that is found later.
+constexpr Duration kLargestOffset{1'000'000};
+
+}  // namespace
 
 ScanQueue::Fate ScanQueue::addScan(LidarScan scan) {
   if ((newest_scan_ && scan.end <= *newest_scan_) || scan.begin > scan.end) return Fate::kBackwards;
@@ -28,22 +34,26 @@ std::optional<ScanQueue::Ready> ScanQueue::pop() {
     scans_.pop_front();
     return ready;
   }
-  const bool complete = newest_sample_ && *newest_sample_ >= scans_.front().end;
+  const bool complete = newest_sample_ && corrected(*newest_sample_) >= scans_.front().end;
   if (!complete && !closed_ && scans_.size() <= kPatience) return std::nullopt;
   Ready ready{std::move(scans_.front()), {}, complete};
   scans_.pop_front();
   ready.odometry = samplesFor(ready.scan);
-  released_ = ready.scan.end;
+  released_ = ready.scan.end + offset_;
   return ready;
 }
 
 std::vector<BodyOdometry> ScanQueue::samplesFor(const LidarScan& scan) {
-  // Later scans begin later: what lies before the last sample at or before this begin is not needed again.
-  while (samples_.size() >= 2 && samples_[1].time <= scan.begin) samples_.pop_front();
+  // Later scans begin later: what lies far before the last sample at or before this begin is not needed
+  // again.
+  const Time oldest = scan.begin - Duration{2 * kLargestOffset.us};
+  while (samples_.size() >= 2 && samples_[1].time <= oldest) samples_.pop_front();
   std::vector<BodyOdometry> chosen;
   for (const BodyOdometry& sample : samples_) {
-    chosen.push_back(sample);
-    if (sample.time >= scan.end) break;
+    const Time time = corrected(sample.time);
+    if (time <= scan.begin) chosen.clear();
+    chosen.push_back({time, sample.T_odom_body});
+    if (time >= scan.end) break;
   }
   return chosen;
 }

@@ -33,6 +33,9 @@ class ScanQueue {
 
   Fate addScan(LidarScan scan);
   Fate addOdometry(const BodyOdometry& sample);
+  // How far the samples' stamps are ahead of the scans' clock, from now on: they are handed out, and waited
+  // for, with it taken off. Smaller than 1 s.
+  void setClockOffset(Duration offset) { offset_ = offset; }
   // Nothing more will arrive: every scan held is ready.
   void close() { closed_ = true; }
   // The oldest scan, if it is ready.
@@ -43,12 +46,15 @@ class ScanQueue {
 
  private:
   std::vector<BodyOdometry> samplesFor(const LidarScan& scan);
+  Time corrected(Time stamp) const { return stamp - offset_; }
 
   bool waits_for_odometry_;
   bool closed_ = false;
   std::deque<LidarScan> scans_;
-  std::deque<BodyOdometry> samples_;
-  std::optional<Time> newest_scan_, newest_sample_, released_;
+  std::deque<BodyOdometry> samples_;  // as they are stamped
+  Duration offset_;
+  std::optional<Time> newest_scan_;
+  std::optional<Time> newest_sample_, released_;  // by the samples' clock
 };
 
 }  // namespace sgraphs

@@ -17,6 +17,7 @@ void addEval(CLI::App& app);
 void addLog(CLI::App& app);
 void addBench(CLI::App& app);
 void addSpy(CLI::App& app);
+void addSend(CLI::App& app);
 void addReserved(CLI::App& app);
 
 }  // namespace sgraphs::cli

@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   cli::addLog(app);
   cli::addBench(app);
   cli::addSpy(app);
+  cli::addSend(app);
   cli::addReserved(app);
   try {
     app.parse(argc, argv);

@@ -177,6 +177,9 @@ RunRecord Replay::record() const {
   add("free_space", *free_space_);
   add("rooms", *rooms_);
   add("loops", *loops_);
+  if (const auto clock = odometry_->legsClock())
+    record.legs_clock = RunRecord::LegsClock{1e3 * clock->offset_s, 1e3 * clock->sigma_s,
+                                             1e3 * odometry_->legsClockInForce().seconds()};
   if (counts_->lost_packets > 0) record.gaps["lidar_packets"] = counts_->lost_packets;
   return record;
 }

@@ -27,6 +27,7 @@ OdometryParts makeOdometryParts(const SystemConfig& config, const std::shared_pt
       return odometry->step(scan, samples);
     };
   };
+  parts.clock = config.odometry.clock;
   return parts;
 }
 

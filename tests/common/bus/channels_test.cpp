@@ -27,6 +27,7 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kSpotOdometry, true);
   expectRow(kRoundSchedule, true);
   expectRow(kStreamEnd, true);
+  expectRow(kStatusVelodyneDriver, false);
   expectRow(kOdometry, false);
   expectRow(kPoseOdom, false);
   expectRow(kKeyframe, false);

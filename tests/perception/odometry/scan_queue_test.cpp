@@ -51,6 +51,31 @@ TEST(ScanQueueTest, SamplesReachFromTheLastBeforeTheBeginToTheFirstAfterTheEnd) 
   EXPECT_EQ(timesOf(queue.pop()->odometry), (std::vector<int64_t>{1000, 1040, 1080, 1120}));
 }
 
+TEST(ScanQueueTest, AClockOffsetIsTakenOffTheSamples) {
+  ScanQueue queue(true);
+  for (int64_t t = 800; t <= 1040; t += 40) queue.addOdometry(sampleAt(t));
+  queue.addScan(scanAt(1000));
+  EXPECT_EQ(timesOf(queue.pop()->odometry), (std::vector<int64_t>{880, 920, 960, 1000}));
+  // Older samples are still there for a clock that is found to be ahead.
+  queue.setClockOffset(Duration{50});
+  queue.addScan(scanAt(1060));
+  EXPECT_FALSE(queue.pop()) << "1040 is 990";
+  for (int64_t t = 1080; t <= 1120; t += 40)
+    EXPECT_EQ(queue.addOdometry(sampleAt(t)), ScanQueue::Fate::kKept);
+  EXPECT_EQ(timesOf(queue.pop()->odometry), (std::vector<int64_t>{950, 990, 1030, 1070}));
+}
+
+// Else samples that arrive after the offset is found would be dropped, and those that came before kept.
+TEST(ScanQueueTest, AnOffsetFoundLaterMakesNoSampleLate) {
+  ScanQueue queue(true);
+  queue.addOdometry(sampleAt(880));
+  queue.addOdometry(sampleAt(1000));
+  queue.addScan(scanAt(1000));
+  ASSERT_TRUE(queue.pop());
+  queue.setClockOffset(Duration{100});
+  EXPECT_EQ(queue.addOdometry(sampleAt(1020)), ScanQueue::Fate::kKept);
+}
+
 TEST(ScanQueueTest, TheTenthLaterScanEndsTheWait) {
   ScanQueue queue(true);
   for (int s = 0; s < 10; ++s) queue.addScan(scanAt(1000 + 100 * s));
