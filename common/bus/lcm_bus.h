@@ -13,6 +13,9 @@ class LCM;
 
 namespace sgraphs {
 
+// The URL that LcmBus opens for `url`, for programs that are told theirs.
+std::string fullLcmUrl(std::string url);
+
 // LCM with any provider URL; empty: $LCM_DEFAULT_URL, else LCM's default. A udpm URL without recv_buf_size
 // gets one of 4 MB (the kernel grants twice net.core.rmem_max at most): LCM's default loses messages above
 // 115 kB. Queues are unbounded, and large datagrams are sent with a short pause between them, so that a
@@ -20,12 +23,13 @@ namespace sgraphs {
 class LcmBus : public Bus {
  public:
   // Throws Error, with what to do, if the URL is bad or the multicast self test fails.
-  explicit LcmBus(const std::string& url);
+  explicit LcmBus(const std::string& url, int64_t boot = 0);
   ~LcmBus() override;
 
   void publish(const std::string& channel, Bytes bytes) override;
   void subscribe(const std::string& channel, Handler handler) override;
   bool dispatch(int timeout_ms) override;
+  int64_t boot() const override { return boot_; }
 
  private:
   struct Subscription;
@@ -33,6 +37,7 @@ class LcmBus : public Bus {
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
   std::exception_ptr pending_;  // what a handler threw while LCM's C code was on the stack
   size_t burst_bytes_ = 0;
+  int64_t boot_;
 };
 
 }  // namespace sgraphs

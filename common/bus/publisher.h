@@ -13,7 +13,8 @@ namespace sgraphs {
 // Stamps what a process writes: session, boot, and consecutive numbers per channel from 0.
 class Publisher {
  public:
-  explicit Publisher(Bus& bus, int64_t boot = 0) : bus_(bus), boot_(boot) {}
+  explicit Publisher(Bus& bus) : Publisher(bus, bus.boot()) {}
+  Publisher(Bus& bus, int64_t boot) : bus_(bus), boot_(boot) {}
 
   void setSession(int64_t session) { session_ = session; }
   int64_t session() const { return session_; }

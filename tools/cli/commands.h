@@ -16,6 +16,8 @@ void addReplay(CLI::App& app);
 void addEval(CLI::App& app);
 void addLog(CLI::App& app);
 void addBench(CLI::App& app);
+void addRun(CLI::App& app);
+void addDoctor(CLI::App& app);
 void addReserved(CLI::App& app);
 
 }  // namespace sgraphs::cli

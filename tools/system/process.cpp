@@ -20,8 +20,8 @@ namespace sgraphs {
 namespace {
 
 constexpr double kEndOverdue_s = 30;
-constexpr double kAwaitedOverdue_s = 10;
 constexpr int kPoll_ms = 100;
+constexpr int kPollAwaiting_ms = 10;
 
 sigset_t stopSignals() {
   sigset_t signals;
@@ -49,6 +49,31 @@ class SignalWatch {
 
  private:
   int file_ = -1;
+};
+
+// Runs what is to be done when something was awaited for too long.
+class Deadline {
+ public:
+  explicit Deadline(const Awaited& awaited) : awaited_(awaited) {}
+
+  // Whether anything is awaited.
+  bool check() {
+    const int64_t now = awaited_.number();
+    if (now < 0 || now != number_) {
+      number_ = now;
+      waiting_.restart();
+    } else if (waiting_.elapsedSeconds() > awaited_.patience_s()) {
+      if (!awaited_.said.empty()) spdlog::warn("{} {}", number_, awaited_.said);
+      awaited_.give_up();
+      waiting_.restart();
+    }
+    return now >= 0;
+  }
+
+ private:
+  const Awaited& awaited_;
+  int64_t number_ = -1;
+  Stopwatch waiting_;
 };
 
 int failed(const std::string& name, const std::exception& e, int code) {
@@ -79,8 +104,13 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   app.add_option("--end-after-silence", setup.end_after_silence_s,
                  "End the stream after so many seconds without a message; 0: never")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--boot", setup.boot, "How often this process was restarted within the session")
+      ->check(CLI::NonNegativeNumber);
   bool print_config = false;
   app.add_flag("--print-config", print_config, "Print the configuration in force and exit");
+  if (text.may_be_live)
+    app.add_flag("--live", setup.live,
+                 "Rounds have a deadline (live.deadline_s): a late stage joins the next one");
   if (text.writes_output) app.add_option("-o,--output", setup.output_dir, "Folder to write the result to");
   try {
     app.parse(argc, argv);
@@ -109,9 +139,9 @@ int runProcess(const ProcessText& text, int argc, char** argv,
 
 void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
   SignalWatch signals;
-  Stopwatch status, silence, overdue, waiting;
-  int64_t awaited = -1;
-  bool heard = false;
+  Stopwatch status, silence, overdue;
+  std::vector<Deadline> deadlines(hooks.awaited.begin(), hooks.awaited.end());
+  bool heard = false, awaiting = false;
   hooks.publish_status();
   spdlog::info("listening");
   while (!hooks.done() || setup.stay) {
@@ -119,21 +149,13 @@ void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
       hooks.finish("stopped by a signal");
       break;
     }
-    if (bus.dispatch(kPoll_ms)) {
+    if (bus.dispatch(awaiting ? kPollAwaiting_ms : kPoll_ms)) {
       heard = true;
       silence.restart();
       overdue.restart();
     }
-    if (const int64_t now = hooks.awaited(); now < 0 || now != awaited) {
-      awaited = now;
-      waiting.restart();
-    } else if (waiting.elapsedSeconds() > kAwaitedOverdue_s) {
-      spdlog::warn(
-          "round {}: an answer to its map did not arrive within {:.0f} s; the next one goes on without it",
-          awaited, kAwaitedOverdue_s);
-      hooks.give_up_awaited();
-      waiting.restart();
-    }
+    awaiting = false;
+    for (Deadline& deadline : deadlines) awaiting = deadline.check() || awaiting;
     if (!hooks.overdue()) overdue.restart();
     if (overdue.elapsedSeconds() > kEndOverdue_s)
       hooks.finish("the end of the stream did not arrive within 30 s");

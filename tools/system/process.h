@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "common/bus/bus.h"
 #include "tools/system/system_config.h"
@@ -16,17 +17,31 @@ struct ProcessSetup {
   std::string odometry;            // override of SESSION's mode; empty: none
   std::string output_dir;          // empty: nothing is written
   bool stay = false;               // goes on publishing STATUS when done
+  bool live = false;               // rounds have a deadline
+  int64_t boot = 0;                // how often this process was restarted within the session
   double end_after_silence_s = 0;  // 0: silence is a state, not an end
 };
 
 struct ProcessText {
   std::string name, purpose, example;
   bool writes_output = false;
+  bool may_be_live = false;  // has --live
 };
 
 // Reads the command line and runs `body`; errors become one line on stderr and the contract's exit code.
 int runProcess(const ProcessText& text, int argc, char** argv,
                const std::function<int(const ProcessSetup&)>& body);
+
+// What a node cannot go on without, and how long the clock lets it wait.
+struct Awaited {
+  std::function<int64_t()> number;  // changes with what is awaited; -1: nothing is
+  std::function<double()> patience_s;
+  std::function<void()> give_up;
+  std::string said;  // when it is given up, behind the number; empty: nothing is said
+};
+
+// How long a message on its way may take; after that it was lost.
+inline constexpr double kLostAfter_s = 10;
 
 // What the loop needs of a node.
 struct LoopHooks {
@@ -35,10 +50,7 @@ struct LoopHooks {
   std::function<void(const std::string&)> finish;  // ends the stream for this reason
   // The end is announced; it must follow within 30 s of the last message.
   std::function<bool()> overdue = [] { return false; };
-  // What the node waits for before anything else can be done, as a number that changes with it; -1: nothing.
-  // After 10 s of the same it is given up: the message was lost.
-  std::function<int64_t()> awaited = [] { return int64_t{-1}; };
-  std::function<void()> give_up_awaited = [] {};
+  std::vector<Awaited> awaited = {};
 };
 
 // Dispatches until the node is done (with `stay`: until SIGINT or SIGTERM, which always stop it cleanly).

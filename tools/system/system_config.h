@@ -7,6 +7,7 @@
 #include "perception/odometry/odometry_config.h"
 #include "perception/planes/planes_config.h"
 #include "perception/rooms/rooms_config.h"
+#include "tools/system/live_config.h"
 
 namespace sgraphs {
 
@@ -18,6 +19,7 @@ struct SystemConfig {
   RoomsConfig rooms;
   LoopsConfig loops;
   BackendConfig backend;
+  LiveConfig live;
 
   void visit(ConfigVisitor& v) {
     v.section("odometry", odometry, "Scans to poses and keyframes");
@@ -26,12 +28,15 @@ struct SystemConfig {
     v.section("rooms", rooms, "Free space and walls to rooms, doorways and floors");
     v.section("loops", loops, "Keyframe clouds and the optimised map to loop closures");
     v.section("backend", backend, "Observations to one optimised graph");
+    v.section("live", live, "Running live (`sgraphs-backend --live`, `sgraphs run`)");
   }
 };
 
-// Identity of a configuration: all keys and values but the number of threads, which changes no result.
+// Identity of a configuration: all keys and values but those that change no result: the number of threads,
+// and the deadline of a live run, whose every effect ROUND_SCHEDULE records.
 inline std::string digestOf(SystemConfig config) {
   config.odometry.threads = OdometryConfig{}.threads;
+  config.live = LiveConfig{};
   return configDigest(visitOf(config));
 }
 
