@@ -169,6 +169,60 @@ TEST(ConvertRoomsTest, WhatCannotBeIsRefused) {
   }
 }
 
+LoopClosures someLoops() {
+  LoopClosure loop;
+  loop.id = {2};
+  loop.pose.kind = RelativePoseKind::kLoop;
+  loop.pose.from = {3};
+  loop.pose.to = {70};
+  loop.pose.T_from_to.translation = {1, -2, 0.1};
+  loop.pose.covariance = 1e-4 * Matrix6d::Identity();
+  loop.pose.registered = true;
+  loop.overlap = 0.75;
+  loop.inlier_share = 0.5;
+  LoopClosure next = loop;
+  next.id = {5};
+  return {
+      .round = 71, .time = Time{99}, .accepted = {loop, next}, .withdrawn = {{0}, {1}}, .searching = true};
+}
+
+TEST(ConvertLoopsTest, RoundTripIsExact) {
+  const LoopClosures loops = someLoops();
+  const auto read = fromMessages(test::throughBytes(toMessages(loops, "")));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->round, 71);
+  EXPECT_TRUE(read->searching);
+  EXPECT_EQ(read->withdrawn, (std::vector<LoopId>{{0}, {1}}));
+  ASSERT_EQ(read->accepted.size(), 2u);
+  const LoopClosure &a = loops.accepted[0], &b = read->accepted[0];
+  EXPECT_EQ(b.id, a.id);
+  EXPECT_EQ(b.pose.from, a.pose.from);
+  EXPECT_EQ(b.pose.to, a.pose.to);
+  EXPECT_EQ(b.pose.T_from_to.translation, a.pose.T_from_to.translation);
+  EXPECT_EQ(b.pose.covariance, a.pose.covariance);
+  EXPECT_EQ(b.overlap, 0.75);
+  EXPECT_EQ(b.inlier_share, 0.5);
+}
+
+TEST(ConvertLoopsTest, WhatCannotBeIsRefused) {
+  const loop_closures_t good = toMessages(someLoops(), "").at(0);
+  const std::vector<std::function<void(loop_closures_t&)>> faults = {
+      [](loop_closures_t& m) { m.round = -1; },
+      [](loop_closures_t& m) { m.accepted[0].id = -1; },
+      [](loop_closures_t& m) { m.accepted[1].id = m.accepted[0].id; },
+      [](loop_closures_t& m) { m.accepted[0].pose.kind = relative_pose_t::NEIGHBOUR; },
+      [](loop_closures_t& m) { m.accepted[0].pose.from_keyframe = m.accepted[0].pose.to_keyframe; },
+      [](loop_closures_t& m) { m.accepted[0].pose.covariance[0] = -1; },
+      [](loop_closures_t& m) { m.accepted[0].overlap = NAN; },
+      [](loop_closures_t& m) { m.accepted[0].inlier_share = 1.5; },
+      [](loop_closures_t& m) { m.withdrawn[1] = m.withdrawn[0]; }};
+  for (size_t i = 0; i < faults.size(); ++i) {
+    std::vector<loop_closures_t> bad = {good};
+    faults[i](bad[0]);
+    EXPECT_FALSE(fromMessages(bad)) << "fault " << i;
+  }
+}
+
 TEST(RoundAssemblyTest, ChunksOfANewerRoundReplaceAnIncompleteOne) {
   RoundAssembly<rooms_t> assembly;
   rooms_t m{};
@@ -198,6 +252,7 @@ TEST(ConvertMapUpdateTest, KeyframesAndPlanesOfAllChunksAreReadAndOtherLayersPas
   m.round = 6;
   m.keyframe = 9;
   m.idle = 1;
+  m.keyframe_covariance[7] = 0.25;
   graph_node_t node{};
   node.layer = graph_node_t::KEYFRAMES;
   node.id = 9;
@@ -213,6 +268,7 @@ TEST(ConvertMapUpdateTest, KeyframesAndPlanesOfAllChunksAreReadAndOtherLayersPas
   EXPECT_EQ(update->round, 6);
   EXPECT_TRUE(update->idle);
   EXPECT_EQ(update->newest, KeyframeId{9});
+  EXPECT_EQ(update->newest_covariance(1, 1), 0.25);
   ASSERT_EQ(update->keyframes.size(), 1u);
   EXPECT_FALSE(update->keyframes[0].floor.valid());
   EXPECT_EQ(update->keyframes[0].T_map_body.translation.x(), 2);

@@ -22,6 +22,8 @@
 #include "sgraphs/keyframe_planes_t.hpp"
 #include "sgraphs/keyframe_t.hpp"
 #include "sgraphs/lidar_points_t.hpp"
+#include "sgraphs/loop_closure_t.hpp"
+#include "sgraphs/loop_closures_t.hpp"
 #include "sgraphs/map_chunk_t.hpp"
 #include "sgraphs/map_to_odom_t.hpp"
 #include "sgraphs/odometry_t.hpp"
@@ -58,9 +60,10 @@ std::map<std::string, std::string> fingerprints() {
 std::map<std::string, std::string> built() {
   return fingerprints<doorway_t, floor_t, free_space_cluster_t, free_space_t, free_space_vertex_t,
                       graph_node_t, graph_plane_t, graph_update_t, header_t, keyframe_planes_t, keyframe_t,
-                      lidar_points_t, map_chunk_t, map_to_odom_t, odometry_t, passage_t, plane_t, pose_t,
-                      relative_pose_t, room_t, rooms_t, round_schedule_t, run_result_t, session_t,
-                      spot_odometry_t, status_t, stream_end_t, transform_t, velodyne_packets_t>();
+                      lidar_points_t, loop_closure_t, loop_closures_t, map_chunk_t, map_to_odom_t, odometry_t,
+                      passage_t, plane_t, pose_t, relative_pose_t, room_t, rooms_t, round_schedule_t,
+                      run_result_t, session_t, spot_odometry_t, status_t, stream_end_t, transform_t,
+                      velodyne_packets_t>();
 }
 
 std::map<std::string, std::string> locked() {

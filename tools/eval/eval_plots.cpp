@@ -18,15 +18,26 @@ constexpr double kCell_m = 0.05;
 constexpr double kErrorScale_m = 0.10;
 constexpr int kErrorSteps = 32;
 
-std::vector<Eigen::Vector2d> seenFromAbove(const std::vector<StampedPose>& poses, const SE3& T_truth_map) {
-  std::vector<Eigen::Vector2d> line;
-  line.reserve(poses.size());
-  for (const auto& pose : poses) line.push_back((T_truth_map * pose.pose.translation).head<2>());
-  return line;
+// The path as far as it is on the storey, in pieces.
+void drawPath(PlanView& view, const std::vector<StampedPose>& poses, const SE3& T_truth_map, Storey storey,
+              const std::vector<double>& floors, Color color, double pen) {
+  std::vector<Eigen::Vector2d> piece;
+  const auto draw = [&] {
+    if (piece.size() > 1) view.canvas().polyline(piece, color, pen);
+    piece.clear();
+  };
+  for (const auto& pose : poses) {
+    const Eigen::Vector3d p = T_truth_map * pose.pose.translation;
+    if (isOn(storey, p.z(), floors))
+      piece.push_back(p.head<2>());
+    else
+      draw();
+  }
+  draw();
 }
 
 // Cells hold the mean error of their points.
-Raster errorRaster(const MapResult& map, const Truth& truth, const Paper& extent) {
+Raster errorRaster(const MapResult& map, const Truth& truth, Storey storey, const Paper& extent) {
   Raster raster;
   raster.cell = kCell_m;
   raster.origin = extent.min;
@@ -38,9 +49,10 @@ Raster errorRaster(const MapResult& map, const Truth& truth, const Paper& extent
   const auto floors = floorHeights(truth);
   for (size_t i = 0; i < map.points_truth.size(); ++i) {
     const Eigen::Vector3d& p = map.points_truth[i];
-    const bool in_slice = std::any_of(floors.begin(), floors.end(), [&](double z) {
-      return p.z() > z + kSliceLow_m && p.z() < z + kSliceHigh_m;
-    });
+    bool in_slice = false;
+    for (size_t f = 0; f < floors.size(); ++f)
+      in_slice = in_slice || ((!storey || f == *storey) && p.z() > floors[f] + kSliceLow_m &&
+                              p.z() < floors[f] + kSliceHigh_m);
     const Eigen::Vector2d cell = ((p.head<2>() - raster.origin) / kCell_m).array().floor();
     if (!in_slice || cell.minCoeff() < 0 || cell.x() >= raster.width || cell.y() >= raster.height) continue;
     const size_t index = static_cast<size_t>(cell.y()) * raster.width + static_cast<size_t>(cell.x());
@@ -86,16 +98,17 @@ class Chart {
 
 }  // namespace
 
-std::string trajectoryPlot(const Evaluation& evaluation, const Truth& truth) {
-  PlanView view(truth);
+std::string trajectoryPlot(const Evaluation& evaluation, const Truth& truth, Storey storey) {
+  PlanView view(truth, storey);
   view.drawWalls();
+  const std::vector<double> floors = floorHeights(truth);
   const double pen = 0.28 * view.letter();
-  view.canvas().polyline(seenFromAbove(truth.poses, SE3{}), kTruth, 1.6 * pen);
+  drawPath(view, truth.poses, SE3{}, storey, floors, kTruth, 1.6 * pen);
   view.legend("truth", kTruth);
   for (const size_t i : {size_t{2}, size_t{0}}) {  // odometry below, the optimised one on top
     const auto& t = evaluation.trajectories[i];
     if (!t.missing.empty()) continue;
-    view.canvas().polyline(seenFromAbove(t.poses, t.absolute.T_truth_map), kEstimates[i], pen);
+    drawPath(view, t.poses, t.absolute.T_truth_map, storey, floors, kEstimates[i], pen);
     view.legend(t.file + formatNumber(" (ATE %.3f m)", t.absolute.translation_m.rmse), kEstimates[i]);
   }
   return view.canvas().encode();
@@ -121,11 +134,11 @@ std::string errorPlot(const Evaluation& evaluation, const Truth& truth) {
   return chart.canvas().encode();
 }
 
-std::string mapPlot(const Evaluation& evaluation, const Truth& truth) {
+std::string mapPlot(const Evaluation& evaluation, const Truth& truth, Storey storey) {
   if (!evaluation.map.missing.empty()) return {};
-  PlanView view(truth);
+  PlanView view(truth, storey);
   view.drawWalls();
-  view.canvas().raster(errorRaster(evaluation.map, truth, view.extent()));
+  view.canvas().raster(errorRaster(evaluation.map, truth, storey, view.extent()));
   for (const double cm : {0.0, 2.5, 5.0, 7.5})
     view.legend(formatNumber("%g cm", cm), viridis(cm / 100 / kErrorScale_m));
   view.legend("10 cm or more", viridis(1));
@@ -138,14 +151,17 @@ std::vector<std::pair<std::string, std::string>> evaluationPlots(const Evaluatio
   const auto add = [&](const std::string& name, std::string png) {
     if (!png.empty()) plots.emplace_back(name, std::move(png));
   };
-  add("eval_trajectory.png", trajectoryPlot(evaluation, truth));
   add("eval_error.png", errorPlot(evaluation, truth));
-  add("eval_map.png", mapPlot(evaluation, truth));
-  add("eval_walls.png", wallPlot(evaluation, truth));
-  const size_t storeys = truth.plan ? truth.plan->floors_z_m.size() : 0;
-  for (size_t s = 0; s < storeys; ++s)
-    add(storeys == 1 ? "eval_rooms.png" : "eval_rooms_" + std::to_string(s) + ".png",
-        roomPlot(evaluation, truth, s));
+  const size_t storeys = floorHeights(truth).size();
+  for (size_t i = 0; i < storeys; ++i) {
+    const Storey storey = storeys == 1 ? Storey() : Storey(i);
+    const std::string end = storeys == 1 ? ".png" : "_" + std::to_string(i) + ".png";
+    add("eval_trajectory" + end, trajectoryPlot(evaluation, truth, storey));
+    add("eval_map" + end, mapPlot(evaluation, truth, storey));
+    add("eval_walls" + end, wallPlot(evaluation, truth, storey));
+    if (truth.plan && !truth.plan->floors_z_m.empty())
+      add("eval_rooms" + end, roomPlot(evaluation, truth, i));
+  }
   return plots;
 }
 

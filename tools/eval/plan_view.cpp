@@ -14,7 +14,7 @@ constexpr int kMaxPixels = 2000;
 constexpr double kOutlineHeight_m = 1.0;
 constexpr double kBodyHeight_m = 0.5;  // a legged robot's
 
-Segments outlines(const Truth& truth, std::optional<size_t> storey) {
+Segments outlines(const Truth& truth, Storey storey) {
   Segments segments;
   if (!truth.mesh) return segments;
   const auto floors = floorHeights(truth);
@@ -48,7 +48,20 @@ std::vector<double> floorHeights(const Truth& truth) {
   return {z[z.size() / 2] - kBodyHeight_m};
 }
 
-PlanView::PlanView(const Truth& truth, std::optional<size_t> storey) : walls_(outlines(truth, storey)) {
+bool isOn(Storey storey, double z_m, const std::vector<double>& floor_heights_m) {
+  if (!storey) return true;
+  constexpr double kBelow_m = 0.3;
+  size_t of = 0;
+  double highest = -INFINITY;
+  for (size_t i = 0; i < floor_heights_m.size(); ++i)
+    if (floor_heights_m[i] <= z_m + kBelow_m && floor_heights_m[i] > highest) {
+      of = i;
+      highest = floor_heights_m[i];
+    }
+  return of == *storey;
+}
+
+PlanView::PlanView(const Truth& truth, Storey storey) : walls_(outlines(truth, storey)) {
   Paper extent{Eigen::Vector2d::Constant(INFINITY), Eigen::Vector2d::Constant(-INFINITY)};
   const auto include = [&](const Eigen::Vector2d& p) {
     extent.min = extent.min.cwiseMin(p);

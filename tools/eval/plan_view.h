@@ -24,12 +24,17 @@ double tickStep(double range, double pieces);
 // Heights of the storeys' floors; where no plan tells them, what a legged robot's path says.
 std::vector<double> floorHeights(const Truth& truth);
 
+// A storey of the building, an index of floorHeights(), or all of them on top of each other.
+using Storey = std::optional<size_t>;
+
+// What stands or lies at a height belongs to the highest floor that is not above it (by more than 0.3 m).
+bool isOn(Storey storey, double z_m, const std::vector<double>& floor_heights_m);
+
 // A picture of the building from above: paper around the truth's path and the walls, a grid in metres, a line
 // of legend above.
 class PlanView {
  public:
-  // Of all storeys on top of each other, or of one, an index of floorHeights().
-  explicit PlanView(const Truth& truth, std::optional<size_t> storey = std::nullopt);
+  PlanView(const Truth& truth, Storey storey);
 
   Canvas& canvas() { return *canvas_; }
   const Paper& extent() const { return extent_; }

@@ -35,6 +35,10 @@ void drawFace(Canvas& canvas, const TrueFace& face, Color color) {
   }
 }
 
+double lowestOf(const TrueFace& face) {
+  return face.samples.empty() ? 0 : face.samples.front().at.y();  // rows stand from below
+}
+
 void drawEstimate(Canvas& canvas, const EstimatedWall& wall, bool is_false) {
   const Eigen::Vector2d normal = wall.normal.head<2>().normalized(), along(normal.y(), -normal.x());
   double low = INFINITY, high = -INFINITY;
@@ -52,12 +56,14 @@ void drawEstimate(Canvas& canvas, const EstimatedWall& wall, bool is_false) {
 
 }  // namespace
 
-std::string wallPlot(const Evaluation& evaluation, const Truth& truth) {
+std::string wallPlot(const Evaluation& evaluation, const Truth& truth, Storey storey) {
   const WallResult& walls = evaluation.walls;
   if (!walls.missing.empty()) return {};
-  PlanView view(truth);
+  PlanView view(truth, storey);
   view.drawWalls();
+  const std::vector<double> floors = floorHeights(truth);
   for (size_t f = 0; f < walls.faces.size(); ++f) {
+    if (!isOn(storey, lowestOf(walls.faces[f]), floors)) continue;
     if (walls.doubled[f])
       drawFace(view.canvas(), walls.faces[f], kDoubled);
     else if (walls.found[f])
@@ -66,8 +72,9 @@ std::string wallPlot(const Evaluation& evaluation, const Truth& truth) {
       drawFace(view.canvas(), walls.faces[f], kMissed);
   }
   for (size_t w = 0; w < walls.walls.size(); ++w)
-    drawEstimate(view.canvas(), walls.walls[w],
-                 std::count(walls.false_walls.begin(), walls.false_walls.end(), w) > 0);
+    if (isOn(storey, walls.walls[w].centroid.z(), floors))
+      drawEstimate(view.canvas(), walls.walls[w],
+                   std::count(walls.false_walls.begin(), walls.false_walls.end(), w) > 0);
   view.legend("found", kFound);
   view.legend("missed", kMissed);
   view.legend("doubled", kDoubled);

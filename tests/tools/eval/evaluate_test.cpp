@@ -203,9 +203,23 @@ TEST(EvaluateTest, RoomsFloorsAndDoorwaysAreJudged) {
   EXPECT_EQ(json["floors"]["ate_by_storey"].size(), 3u);
   EXPECT_EQ(json["doorways"]["of_asked_rooms"]["recall"], 1.0);
   const auto plots = evaluationPlots(e, readTruth(c.truth));
-  EXPECT_EQ(std::count_if(plots.begin(), plots.end(),
-                          [](const auto& plot) { return plot.first.starts_with("eval_rooms_"); }),
-            2);
+  for (const std::string kind : {"rooms", "trajectory"})
+    EXPECT_EQ(std::count_if(plots.begin(), plots.end(),
+                            [&](const auto& plot) { return plot.first.starts_with("eval_" + kind + "_"); }),
+              2)
+        << kind << ": one picture per storey";
+}
+
+TEST(PlanViewTest, WhatStandsOnAFloorIsOnItsStoreyAndOnNoOther) {
+  const std::vector<double> floors = {0.0, -3.0, 3.2};  // in any order
+  EXPECT_TRUE(isOn(0, 0.5, floors));
+  EXPECT_TRUE(isOn(0, 3.1 - 0.3, floors));
+  EXPECT_TRUE(isOn(2, 3.1, floors)) << "a map's floor may lie lower than the building's";
+  EXPECT_TRUE(isOn(1, -0.5, floors));
+  EXPECT_FALSE(isOn(2, 0.5, floors));
+  EXPECT_FALSE(isOn(0, 4.0, floors));
+  EXPECT_TRUE(isOn(0, -9.0, floors)) << "below all: of the first";
+  EXPECT_TRUE(isOn({}, 4.0, floors)) << "all storeys on top of each other";
 }
 
 TEST(EvaluateTest, LayersThatARunDoesNotMakeAreMissingNotZero) {

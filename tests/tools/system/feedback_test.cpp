@@ -1,9 +1,10 @@
-// The loop from the backend through free space and rooms back to it, with small cores.
+// The loop from the backend through free space, rooms and loops back to it, with small cores.
 #include <gtest/gtest.h>
 
 #include "backend/backend_node.h"
 #include "lcmtypes/convert/convert_layers.h"
 #include "perception/free_space/free_space_node.h"
+#include "perception/loops/loops_node.h"
 #include "perception/rooms/rooms_node.h"
 #include "tests/tools/system/bus_recorder.h"
 #include "tests/tools/system/fake_cores.h"
@@ -16,7 +17,8 @@ using testing::FakeOdometry;
 using testing::Recorder;
 using testing::Source;
 
-const std::vector<std::string> kStages = {"odometry", "free-space", "rooms", "backend"};
+const std::vector<std::string> kStages = {"odometry", "free-space", "rooms", "loops", "backend"};
+const std::vector<std::string> kWithoutLoops = {"odometry", "free-space", "rooms", "backend"};
 
 // One vertex per keyframe whose cloud came.
 class FakeFreeSpace {
@@ -45,10 +47,36 @@ Rooms roomsOf(const FreeSpace& space, const MapUpdate& update) {
           .keyframe_floors = {}};
 }
 
+// A loop to the first keyframe from each later cloud, found one round late; the search then takes a round
+// more.
+class FakeLoops {
+ public:
+  LoopClosures step(const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
+    LoopClosures loops;
+    loops.round = update.round;
+    loops.time = update.time;
+    if (const auto found = std::exchange(found_, std::nullopt)) {
+      LoopClosure loop;
+      loop.id = LoopId{found->value};
+      loop.pose.kind = RelativePoseKind::kLoop;
+      loop.pose.from = KeyframeId{0};
+      loop.pose.to = *found;
+      loops.accepted.push_back(loop);
+      loops.searching = true;
+    }
+    if (keyframe && keyframe->id.value > 0) found_ = keyframe->id;
+    loops.searching = loops.searching || found_;
+    return loops;
+  }
+
+ private:
+  std::optional<KeyframeId> found_;
+};
+
 class FeedbackTest : public ::testing::Test {
  protected:
-  void walk(int scans) {
-    source.session("lidar", false, kStages);
+  void walk(int scans, const std::vector<std::string>& stages) {
+    source.session("lidar", false, stages);
     for (int s = 0; s < scans; ++s) source.packet(0.1 * s);
     source.end();
   }
@@ -62,12 +90,15 @@ class FeedbackTest : public ::testing::Test {
                              return free_space_core->step(keyframe, update);
                            }};
   RoomsNode rooms{bus, roomsOf};
+  std::shared_ptr<FakeLoops> loops_core = std::make_shared<FakeLoops>();
+  LoopsNode loops{
+      bus, [this](const auto& keyframe, const auto& update) { return loops_core->step(keyframe, update); }};
   BackendNode backend{bus, coreOf(backend_core)};
   Source source{bus};
 };
 
 TEST_F(FeedbackTest, EachRoundJoinsWhatWasMadeOfTheRoundBefore) {
-  walk(10);  // keyframes 0 to 3
+  walk(10, kWithoutLoops);  // keyframes 0 to 3
   ASSERT_TRUE(backend.done());
   const auto& inputs = backend_core->inputs;
   ASSERT_EQ(inputs.size(), 4u + BackendNode::kQuietRounds);
@@ -85,6 +116,27 @@ TEST_F(FeedbackTest, EachRoundJoinsWhatWasMadeOfTheRoundBefore) {
   EXPECT_EQ(rooms_messages.messages.size(), inputs.size() - 1) << "RUN_RESULT comes before the last";
   EXPECT_TRUE(free_space.done());
   EXPECT_TRUE(rooms.done());
+}
+
+TEST_F(FeedbackTest, LoopsJoinTheNextRoundAndTheEndWaitsForTheSearch) {
+  walk(10, kStages);  // keyframes 0 to 3; that of the last is found in the first final round
+  ASSERT_TRUE(backend.done());
+  EXPECT_EQ(backend.result().why_not, "");
+  const auto& inputs = backend_core->inputs;
+  std::vector<int64_t> found_from, joined_round;
+  for (size_t round = 0; round < inputs.size(); ++round) {
+    ASSERT_EQ(inputs[round].loops.has_value(), round > 0);
+    if (round == 0) continue;
+    EXPECT_EQ(inputs[round].loops->round, static_cast<int64_t>(round) - 1);
+    for (const LoopClosure& loop : inputs[round].loops->accepted) {
+      found_from.push_back(loop.pose.to.value);
+      joined_round.push_back(static_cast<int64_t>(round));
+    }
+  }
+  EXPECT_EQ(found_from, (std::vector<int64_t>{1, 2, 3}));
+  EXPECT_EQ(joined_round, (std::vector<int64_t>{3, 4, 5}));
+  EXPECT_EQ(inputs.size(), 8u) << "rounds 4 and 5 end with a search going on, 6 and 7 are quiet";
+  EXPECT_TRUE(loops.done());
 }
 
 TEST_F(FeedbackTest, WithoutTheStagesNothingIsWaitedForAndNothingSaid) {
@@ -119,18 +171,15 @@ class LossyFeedbackTest : public ::testing::Test {
     }
   }
   void answer(int64_t round) {
-    rooms_t m{};
-    m.header.session = 7;
-    m.header.seq = round;
-    m.round = round;
-    m.num_chunks = 1;
-    publish(bus, channels::kRooms, m);
-    free_space_t f{};
-    f.header.session = 7;
-    f.header.seq = round;
-    f.round = round;
-    f.num_chunks = 1;
-    publish(bus, channels::kFreeSpace, f);
+    const auto say = [&](const auto& channel, auto m) {
+      m.header.session = 7;
+      m.header.seq = m.round = round;
+      m.num_chunks = 1;
+      publish(bus, channel, m);
+    };
+    say(channels::kRooms, rooms_t{});
+    say(channels::kFreeSpace, free_space_t{});
+    say(channels::kLoopClosures, loop_closures_t{});
     bus.dispatch(0);
   }
   MemoryBus upstream_bus, bus;
@@ -156,8 +205,9 @@ TEST_F(LossyFeedbackTest, ARoundWaitsForItsAnswersUntilTheyAreGivenUp) {
   EXPECT_EQ(backend.result().reproducible, 0);
   EXPECT_EQ(
       backend.result().why_not,
-      "1 message(s) of FREE_SPACE lost; 1 message(s) of ROOMS lost; 1 FREE_SPACE incomplete when their round "
-      "ran; 1 ROOMS incomplete when their round ran");
+      "1 message(s) of FREE_SPACE lost; 1 message(s) of LOOP_CLOSURES lost; 1 message(s) of ROOMS lost; "
+      "1 FREE_SPACE incomplete when their round ran; 1 LOOP_CLOSURES incomplete when their round ran; "
+      "1 ROOMS incomplete when their round ran");
 }
 
 TEST_F(LossyFeedbackTest, AForcedEndWaitsForNothing) {
@@ -189,10 +239,18 @@ TEST_F(LossyFeedbackTest, AnAnswerWhoseContentCannotBeIsLost) {
   f.header.session = 7;
   f.num_chunks = 1;
   publish(bus, channels::kFreeSpace, f);
+  loop_closures_t l{};
+  l.header.session = 7;
+  l.num_chunks = 1;
+  l.accepted.resize(1);
+  l.num_accepted = 1;  // a quaternion of zeros
+  publish(bus, channels::kLoopClosures, l);
   bus.dispatch(0);
   EXPECT_EQ(core->inputs.size(), 2u) << "the round goes on without";
   EXPECT_FALSE(core->inputs[1].rooms);
+  EXPECT_FALSE(core->inputs[1].loops);
   EXPECT_EQ(backend.gate().counts().at("ROOMS").rejected, 1);
+  EXPECT_EQ(backend.gate().counts().at("LOOP_CLOSURES").rejected, 1);
 }
 
 }  // namespace
