@@ -22,7 +22,8 @@ bool InputGate::accept(const std::string& channel, const header_t& header, int64
     return false;
   }
   if (boot != boot_.end() && header.boot > boot->second) {
-    count.last_seq = -1;
+    // A process that resumes goes on with its numbers; one that cannot begins again.
+    if (header.seq <= count.last_seq) count.last_seq = -1;
     ++count.restarts;
     spdlog::warn("{}: the process that writes it was restarted", channel);
   }

@@ -50,7 +50,7 @@ struct LcmBus::Subscription {
   }
 };
 
-LcmBus::LcmBus(const std::string& url, int64_t boot) : boot_(boot) {
+LcmBus::LcmBus(const std::string& url) {
   const std::string full = fullLcmUrl(url);
   lcm_ = std::make_unique<lcm::LCM>(full);
   if (!lcm_->good())

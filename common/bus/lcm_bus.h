@@ -23,13 +23,12 @@ std::string fullLcmUrl(std::string url);
 class LcmBus : public Bus {
  public:
   // Throws Error, with what to do, if the URL is bad or the multicast self test fails.
-  explicit LcmBus(const std::string& url, int64_t boot = 0);
+  explicit LcmBus(const std::string& url);
   ~LcmBus() override;
 
   void publish(const std::string& channel, Bytes bytes) override;
   void subscribe(const std::string& channel, Handler handler) override;
   bool dispatch(int timeout_ms) override;
-  int64_t boot() const override { return boot_; }
 
  private:
   struct Subscription;
@@ -37,7 +36,6 @@ class LcmBus : public Bus {
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
   std::exception_ptr pending_;  // what a handler threw while LCM's C code was on the stack
   size_t burst_bytes_ = 0;
-  int64_t boot_;
 };
 
 }  // namespace sgraphs

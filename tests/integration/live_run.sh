@@ -2,8 +2,8 @@
 # `sgraphs run` of a log, in a network namespace of its own where the machine allows one, while one of its processes is
 # ill-treated.
 #   live_run.sh BIN LOG OUT TREATMENT PROCESS [ARGUMENT…]      BIN: folder of the programs
-# TREATMENT: none; stutter (PROCESS is stopped for a moment, again and again); kill (kill -9, 3 s after its
-# start); interrupt (SIGINT to `sgraphs run` after 4 s). ARGUMENTs go to `sgraphs run`.
+# TREATMENT: none; stutter (PROCESS is stopped for a moment, again and again); kill (kill -9 to each of PROCESS,PROCESS,… in
+# turn, 1.5 s apart); interrupt (SIGINT to `sgraphs run` after 4 s). ARGUMENTs go to `sgraphs run`.
 # Leaves OUT/run.txt (stdout and stderr), OUT/code, OUT/result and OUT/recording. Fails with 99 if it hangs, 98 if the
 # machine has no multicast.
 set -u
@@ -54,8 +54,10 @@ case $TREATMENT in
     done
     ;;
   kill)
-    sleep 3
-    kill -9 "$(child)"
+    for PROCESS in $(echo "$PROCESS" | tr , ' '); do
+      sleep 1.5
+      kill -9 "$(child)"
+    done
     ;;
   interrupt)
     sleep 4

@@ -111,6 +111,28 @@ TEST_F(LiveTest, ALateStageIsLeftOutAndTheRecordingReplaysToTheLiveDigest) {
   }
 }
 
+// Lines of a file: keyframes, poses.
+int linesOf(const fs::path& path) {
+  const std::string text = readAll(path);
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST_F(LiveTest, EveryProcessCanBeKilledAndComesBack) {
+  const Live whole = run("none", "none", "--rate 0.5");
+  const Live live = run("kill", "rooms,planes,free-space,loops,backend,odometry", "--rate 0.5");
+  EXPECT_EQ(live.code, "3\n") << live.said;
+  EXPECT_NE(live.said.find("6 restart(s) of processes"), std::string::npos) << live.said;
+  for (const char* process : {"rooms", "planes", "free-space", "loops", "backend", "odometry"}) {
+    const std::string said = readAll(live.folder / "result/log" / (std::string(process) + ".txt"));
+    EXPECT_NE(said.find("was killed and is back"), std::string::npos) << process << ":\n" << said;
+  }
+  const int keyframes = linesOf(whole.folder / "result/keyframes.tum");
+  ASSERT_GT(keyframes, 10) << whole.said;
+  EXPECT_GE(linesOf(live.folder / "result/keyframes.tum"), keyframes - 3);
+  EXPECT_NE(readAll(live.folder / "result/graph.json").find("\"layer\":\"rooms\""), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(live.folder / "result/state")) << "an ended session leaves no journal";
+}
+
 TEST_F(LiveTest, CtrlCEndsItInOrderWithAResultThatReplays) {
   const Live live = run("interrupt", "none");
   EXPECT_EQ(live.code, "0\n") << live.said;

@@ -48,6 +48,9 @@ LiveRun::LiveRun(RunOptions options)
       session_(bus_, sessionOf(options_, hostClock())),
       recording_(recordingName(options_, session_.session())),
       supervisor_(processTable(options_, recording_), options_.out_dir + "/log") {
+  // Journals of an earlier run are of no use to this one.
+  std::error_code none;
+  fs::remove_all(options_.out_dir + "/state", none);
   if (!options_.record_dir.empty()) makeFolder(options_.record_dir);
   listen();
 }
@@ -205,9 +208,11 @@ void LiveRun::endStream() {
           [this] { return !supervisor_.running(Role::kSource) && !supervisor_.running(Role::kPlayer); });
   for (const Role role : {Role::kSource, Role::kPlayer}) supervisor_.kill(role);
   waitFor(kDrain_s, [] { return false; });
-  session_.publishEnd("");
+  const int restarts = supervisor_.restarts();
+  const std::string why_not = restarts > 0 ? std::to_string(restarts) + " restart(s) of processes" : "";
+  session_.publishEnd(why_not);
   waitFor(kRepeatEnd_s, [] { return false; });
-  session_.publishEnd("");
+  session_.publishEnd(why_not);
 }
 
 void LiveRun::awaitBackend() {

@@ -35,6 +35,8 @@ class Table {
     append(row, {"--lcm-url", options_.lcm_url});
     if (!options_.config_file.empty()) append(row, {"--config", options_.config_file});
     for (const std::string& assignment : options_.assignments) append(row, {"--set", assignment});
+    if (role == Role::kBackend || role == Role::kStage)
+      append(row, {"--state-dir", options_.out_dir + "/state"});
     append(row, arguments);
     rows_.push_back(std::move(row));
   }

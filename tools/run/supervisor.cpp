@@ -39,9 +39,9 @@ void Supervisor::start(Role role) {
 }
 
 // A stage that has ended in order has heard RUN_RESULT; what ended because of its command line would do so
-// again, a player would begin again, and a backend without its map.
+// again, and a player would begin again.
 bool Supervisor::shouldRestart(const ProcessRow& row, int code) const {
-  if (code == kExitUsage || row.role == Role::kPlayer || row.role == Role::kBackend) return false;
+  if (code == kExitUsage || row.role == Role::kPlayer) return false;
   if (row.role == Role::kSource || row.role == Role::kRecorder) return true;
   return code != kExitDone && code != kExitNotReproducible;
 }

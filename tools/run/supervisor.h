@@ -34,6 +34,7 @@ class Supervisor {
 
   // It has ended before stop() or a RUN_RESULT could be the reason, and is not started again.
   bool endedEarly(const std::string& name);
+  pid_t pidOf(const std::string& name) { return states_[name].child ? states_[name].child->pid() : -1; }
   int restarts(const std::string& name) const;
   int restarts() const;
   const std::vector<ProcessRow>& rows() const { return rows_; }

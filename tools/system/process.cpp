@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <thread>
 #include <vector>
 
@@ -76,6 +77,13 @@ class Deadline {
   Stopwatch waiting_;
 };
 
+std::string journalIn(const std::string& folder, const std::string& name) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error("cannot make folder '" + folder + "': " + failed.message());
+  return folder + "/" + name + ".journal";
+}
+
 int failed(const std::string& name, const std::exception& e, int code) {
   std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
   return code;
@@ -106,6 +114,9 @@ int runProcess(const ProcessText& text, int argc, char** argv,
       ->check(CLI::NonNegativeNumber);
   app.add_option("--boot", setup.boot, "How often this process was restarted within the session")
       ->check(CLI::NonNegativeNumber);
+  std::string state_dir;
+  app.add_option("--state-dir", state_dir,
+                 "Folder for the journal that this process resumes from when it was killed");
   bool print_config = false;
   app.add_flag("--print-config", print_config, "Print the configuration in force and exit");
   if (text.may_be_live)
@@ -125,6 +136,7 @@ int runProcess(const ProcessText& text, int argc, char** argv,
     for (const std::string& assignment : assignments) setConfigValue(visitOf(setup.config), assignment);
     if (threads > 0) setup.config.odometry.threads = threads;
     if (!setup.odometry.empty()) parseOdometryMode(setup.odometry);
+    if (!state_dir.empty()) setup.journal = journalIn(state_dir, text.name);
     if (print_config) {
       std::fputs(configToYaml(visitOf(setup.config)).c_str(), stdout);
       return kExitDone;
@@ -137,11 +149,14 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   }
 }
 
-void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
+void runLoop(JournalBus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
   SignalWatch signals;
   Stopwatch status, silence, overdue;
   std::vector<Deadline> deadlines(hooks.awaited.begin(), hooks.awaited.end());
   bool heard = false, awaiting = false;
+  if (const int64_t resumed = bus.resume(); resumed > 0)
+    spdlog::warn("was killed and is back: {} messages from its journal, {:.1f} s", resumed,
+                 status.elapsedSeconds());
   hooks.publish_status();
   spdlog::info("listening");
   while (!hooks.done() || setup.stay) {
@@ -166,6 +181,7 @@ void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks) {
     status.restart();
   }
   hooks.publish_status();
+  bus.forget();
 }
 
 int leaveAfterEnd(const ProcessText& text, const std::function<void()>& repeat_end,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/bus.h"
+#include "common/bus/journal_bus.h"
 #include "tools/system/system_config.h"
 
 namespace sgraphs {
@@ -19,6 +19,7 @@ struct ProcessSetup {
   bool stay = false;               // goes on publishing STATUS when done
   bool live = false;               // rounds have a deadline
   int64_t boot = 0;                // how often this process was restarted within the session
+  std::string journal;             // file that it resumes from when it was killed; empty: it does not
   double end_after_silence_s = 0;  // 0: silence is a state, not an end
 };
 
@@ -55,7 +56,8 @@ struct LoopHooks {
 
 // Dispatches until the node is done (with `stay`: until SIGINT or SIGTERM, which always stop it cleanly).
 // Wall time decides only that nothing comes any more, and then the run is not reproducible.
-void runLoop(Bus& bus, const ProcessSetup& setup, const LoopHooks& hooks);
+// A journal is read before, and removed after.
+void runLoop(JournalBus& bus, const ProcessSetup& setup, const LoopHooks& hooks);
 
 // The end of a stage that another waits for: `repeat_end` sends its last message three times more, since a
 // datagram may be lost. The exit code; why the run is not reproducible is said on stderr.

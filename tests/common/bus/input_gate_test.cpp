@@ -99,6 +99,15 @@ TEST(InputGateTest, ARestartedPublisherCountsFromZeroAgain) {
   EXPECT_THAT(gate.trouble(), HasSubstr("the process that writes A was restarted 1 time(s)"));
 }
 
+TEST(InputGateTest, APublisherThatResumesGoesOnWithItsNumbers) {
+  InputGate gate;
+  for (const int64_t seq : {0, 1, 2}) gate.accept("A", header(seq));
+  int64_t lost = -1;
+  EXPECT_TRUE(gate.accept("A", header(4, 5, 1), &lost));
+  EXPECT_EQ(lost, 1);
+  EXPECT_EQ(gate.counts().at("A").restarts, 1);
+}
+
 TEST(InputGateTest, ChannelsAreCountedApart) {
   InputGate gate;
   EXPECT_TRUE(gate.accept("A", header(0)));
