@@ -25,7 +25,8 @@ constexpr JoinedInput kKeyedByKeyframe[] = {{channels::kKeyframe.name, "odometry
 constexpr JoinedInput kKeyedByRound[] = {{channels::kFreeSpace.name, "free-space"},
                                          {channels::kRooms.name, "rooms"},
                                          {channels::kLoopClosures.name, "loops"}};
-constexpr const char* kStages[] = {"odometry", "planes", "free-space", "rooms", "loops", "backend"};
+constexpr const char* kStages[] = {
+    "odometry", "planes", "free-space", "rooms", "loops", "backend", BackendNode::kScheduleStage};
 
 bool keyedByRound(const std::string& channel) {
   return std::any_of(std::begin(kKeyedByRound), std::end(kKeyedByRound),
@@ -72,6 +73,10 @@ void BackendNode::onSession(const session_t& m) {
     if (std::find(std::begin(kStages), std::end(kStages), stage) == std::end(kStages))
       spdlog::warn("SESSION lists stage '{}', which this version does not have: rounds go on without it",
                    stage);
+  const auto& stages = session->stages;
+  if (mode_ == RoundJoiner::Mode::kWait &&
+      std::find(stages.begin(), stages.end(), kScheduleStage) != stages.end())
+    joiner_.expectSchedules();
   early_.open();
 }
 
@@ -149,7 +154,9 @@ void BackendNode::onSchedule(const round_schedule_t& m) {
   if (done() || !gate_.accept(channel, m.header)) return;
   std::vector<RoundJoiner::Output> outputs;
   for (size_t i = 0; i < m.channel.size(); ++i) outputs.push_back({m.channel[i], -1, m.seq[i]});
-  if (m.round >= rounds_) joiner_.schedule(m.round, outputs);
+  if (m.round < rounds_) return gate_.reject(channel, "its round is closed");
+  joiner_.schedule(m.round, outputs);
+  advance();
 }
 
 void BackendNode::onStreamEnd(const stream_end_t& m) {
@@ -218,7 +225,7 @@ bool BackendNode::workOffKeyframesLeft() {
 
 bool BackendNode::idleRound(Time time) {
   const RoundJoiner::Wants wants = feedbackWanted();
-  if (!joiner_.ready(rounds_, wants)) return false;
+  if (!roundReady(wants)) return false;
   const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
   takeFeedback(joined);
   runRound({.round = rounds_, .time = time, .keyframe = {}}, joined);
@@ -246,18 +253,59 @@ RoundJoiner::Wants BackendNode::feedbackWanted() const {
   return wants;
 }
 
+// A live run decided what joins the round by its clock: the playback must not decide before it knows.
+bool BackendNode::scheduleAwaited() const {
+  if (mode_ == RoundJoiner::Mode::kLive || forced_ || !session_ || schedule_given_up_ >= rounds_)
+    return false;
+  const auto& stages = session_->stages;
+  return std::find(stages.begin(), stages.end(), kScheduleStage) != stages.end() &&
+         joiner_.newestSchedule() < rounds_;
+}
+
+bool BackendNode::roundReady(const RoundJoiner::Wants& wants) {
+  if (forced_) joiner_.releaseSchedule(rounds_);
+  return !scheduleAwaited() && joiner_.ready(rounds_, wants);
+}
+
 int64_t BackendNode::awaitedRound() const {
   const bool due = !pending_.empty() || ending_;
-  return done() || !due || joiner_.ready(rounds_, feedbackWanted()) ? -1 : rounds_ - 1;
+  if (done() || !due || (!scheduleAwaited() && joiner_.ready(rounds_, feedbackWanted()))) return -1;
+  return std::max<int64_t>(rounds_ - 1, 0);
 }
 
 void BackendNode::giveUpAwaited() {
+  if (scheduleAwaited()) {
+    schedule_given_up_ = rounds_;
+    ++missing_[channels::kRoundSchedule.name];
+  }
+  joiner_.releaseSchedule(rounds_);
   for (const auto& [channel, round] : feedbackWanted()) joiner_.lost(channel, round);
   advance();
 }
 
+void BackendNode::leaveOutAwaited() {
+  for (const auto& [channel, round] : feedbackWanted()) {
+    past_deadline_.insert(channel);
+    joiner_.lost(channel, round);
+  }
+  advance();
+}
+
+int64_t BackendNode::awaitedPlanes() const {
+  if (done() || pending_.empty() || !takesPart("planes") || planesLost(next_keyframe_)) return -1;
+  const bool due = pending_.front().keyframe.value >= next_keyframe_;
+  return due && !planes_.contains(next_keyframe_) ? next_keyframe_ : -1;
+}
+
+void BackendNode::giveUpPlanes() {
+  joiner_.lost(channels::kKeyframePlanes.name, next_keyframe_);
+  advance();
+}
+
 void BackendNode::takeFeedback(const RoundJoiner::Joined& joined) {
-  for (const std::string& channel : joined.missing) ++missing_[channel];
+  for (const std::string& channel : joined.missing)
+    past_deadline_.contains(channel) ? ++left_out_ : ++missing_[channel];
+  past_deadline_.clear();
   feedback_taken_ = rounds_ - 1;
   for (const RoundJoiner::Output& output : joined.outputs)
     if (keyedByRound(output.input) && !feedback_.take(output.input, output.key))
@@ -270,16 +318,16 @@ bool BackendNode::keyframeRound(const OdometryEstimate* estimate, bool overdue) 
     if (takesPart(input.stage)) wants[input.channel] = next_keyframe_;
   if (overdue) joiner_.lost(channels::kKeyframe.name, next_keyframe_);
   if (planesLost(next_keyframe_)) joiner_.lost(channels::kKeyframePlanes.name, next_keyframe_);
-  if (!joiner_.ready(rounds_, wants)) return false;
+  if (!roundReady(wants)) return false;
   const RoundJoiner::Joined joined = joiner_.take(rounds_, wants);
   takeFeedback(joined);
   RoundInput input{.round = rounds_, .time = {}, .keyframe = joinedKeyframe(estimate)};
-  // Those of an earlier round, late in live mode, say nothing of this keyframe: they are left out.
-  const auto joins = [&](const RoundJoiner::Output& o) {
+  const auto are_its_planes = [&](const RoundJoiner::Output& o) {
     return o.input == channels::kKeyframePlanes.name && o.key == next_keyframe_;
   };
-  if (std::any_of(joined.outputs.begin(), joined.outputs.end(), joins))
+  if (std::any_of(joined.outputs.begin(), joined.outputs.end(), are_its_planes))
     input.planes = std::move(planes_.at(next_keyframe_));
+  for (const JoinedInput& own : kKeyedByKeyframe) joiner_.forget(own.channel, next_keyframe_);
   ++next_keyframe_;
   planes_.erase(planes_.begin(), planes_.lower_bound(next_keyframe_));
   if (!input.keyframe) return true;
@@ -391,7 +439,8 @@ void BackendNode::repeatEnd() {
 }
 
 void BackendNode::publishStatus() {
-  const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
+  std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
+  if (left_out_ > 0) state += ", " + std::to_string(left_out_) + " answers joined later";
   status_t status = makeStatus("sgraphs-backend", state, gate_, publisher_,
                                pending_.size() + assembly_.size() + planes_.size(), latency_);
   status.header.utime = newest_time_.us;

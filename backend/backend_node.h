@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ class BackendNode {
   static constexpr int kQuietRounds = 2;
   static constexpr int64_t kSnapshotEvery = 50;  // rounds
 
+  // A stage that a live run's SESSION names: rounds of its playback wait for their ROUND_SCHEDULE.
+  static constexpr const char* kScheduleStage = "schedule";
+
   // The bus must outlive the node. In live mode ROUND_SCHEDULE is written, else it is read and obeyed.
   BackendNode(Bus& bus, BackendCore core, RoundJoiner::Mode mode = RoundJoiner::Mode::kWait);
 
@@ -51,6 +55,13 @@ class BackendNode {
   // lost is sent by nobody again: the caller, who has a clock, lets the round go on without.
   int64_t awaitedRound() const;
   void giveUpAwaited();
+  // Live mode: the deadline of awaitedRound() has passed. The next round runs without, ROUND_SCHEDULE says
+  // so, and what comes later joins a later round: nothing is lost.
+  void leaveOutAwaited();
+  // The keyframe whose round waits for KEYFRAME_PLANES; -1: none. Planes have no deadline, since what they
+  // saw belongs to their own keyframe; but a process that is gone must not hold the map for ever.
+  int64_t awaitedPlanes() const;
+  void giveUpPlanes();
   // Sends RUN_RESULT once more, for a reader that lost it (same sequence number).
   void repeatEnd();
   void publishStatus();
@@ -58,6 +69,10 @@ class BackendNode {
   bool done() const { return result_.has_value(); }
   // STREAM_END was heard: ODOMETRY_END should follow soon.
   bool streamEnded() const { return stream_ended_; }
+  // Nothing more comes from upstream: the final rounds are on.
+  bool inputEnded() const { return input_ended_; }
+  // Live mode: answers that their rounds went without.
+  int64_t leftOut() const { return left_out_; }
   const run_result_t& result() const { return *result_; }  // done() only
 
   const SituationalGraph& graph() const { return core_.graph(); }
@@ -96,6 +111,8 @@ class BackendNode {
   std::optional<Keyframe> joinedKeyframe(const OdometryEstimate* estimate);
   void finishIfAllEnded();
   bool takesPart(const std::string& stage) const;
+  bool scheduleAwaited() const;
+  bool roundReady(const RoundJoiner::Wants& wants);
   bool planesLost(int64_t keyframe) const;
   RoundJoiner::Wants feedbackWanted() const;
   void takeFeedback(const RoundJoiner::Joined& joined);
@@ -126,7 +143,10 @@ class BackendNode {
   std::map<int64_t, KeyframePlanes> planes_;  // of keyframes whose rounds have not run, by keyframe
   int64_t newest_planes_ = -1;
   RoundFeedback feedback_;
-  int64_t feedback_taken_ = -1;             // newest round
+  int64_t feedback_taken_ = -1;          // newest round
+  std::set<std::string> past_deadline_;  // channels that the next round does not wait for
+  int64_t left_out_ = 0;
+  int64_t schedule_given_up_ = -1;          // newest round whose ROUND_SCHEDULE was given up
   std::map<std::string, int64_t> missing_;  // outputs that rounds went without, by channel
   std::optional<std::string> odometry_end_why_not_, planes_end_why_not_;  // of the stages that have ended
   bool input_ended_ = false;

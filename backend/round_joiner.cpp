@@ -7,7 +7,7 @@ namespace sgraphs {
 bool RoundJoiner::arrived(const Output& output) {
   Line& line = lines_[output.input];
   line.newest_seq = std::max(line.newest_seq, output.seq);
-  const bool late = mode_ == Mode::kWait && schedules_.empty() && output.key <= line.closed_key;
+  const bool late = mode_ == Mode::kWait && !obeys_schedules_ && output.key <= line.closed_key;
   if (late || line.held.size() >= kMaxHeld) return false;
   return line.held.try_emplace(output.key, output.seq).second;
 }
@@ -19,8 +19,21 @@ void RoundJoiner::lost(const std::string& input, int64_t key) {
 
 void RoundJoiner::schedule(int64_t round, const std::vector<Output>& outputs) {
   if (schedules_.size() >= kMaxSchedules) return;
+  obeys_schedules_ = true;
+  newest_schedule_ = std::max(newest_schedule_, round);
   auto& scheduled = schedules_[round];
   for (const Output& output : outputs) scheduled[output.input].insert(output.seq);
+}
+
+void RoundJoiner::releaseSchedule(int64_t round) {
+  if (schedules_.contains(round)) released_.insert(round);
+}
+
+void RoundJoiner::forget(const std::string& input, int64_t key) {
+  Line& line = lines_[input];
+  line.held.erase(line.held.begin(), line.held.upper_bound(key));
+  line.lost.erase(line.lost.begin(), line.lost.upper_bound(key));
+  line.closed_key = std::max(line.closed_key, key);
 }
 
 int64_t RoundJoiner::keyOf(const Line& line, int64_t seq) {
@@ -29,18 +42,20 @@ int64_t RoundJoiner::keyOf(const Line& line, int64_t seq) {
   return found == line.held.end() ? -1 : found->first;
 }
 
+// Numbers are consecutive per channel: a higher one that has come means that a missing one is lost.
+bool RoundJoiner::settled(const std::string& input, int64_t seq) const {
+  const auto line = lines_.find(input);
+  return line != lines_.end() && line->second.newest_seq >= seq;
+}
+
 bool RoundJoiner::ready(int64_t round, const Wants& wants) const {
   const auto scheduled = schedules_.find(round);
-  if (scheduled != schedules_.end()) {
-    for (const auto& [input, seqs] : scheduled->second) {
-      const auto line = lines_.find(input);
-      // Numbers are consecutive per channel: a higher one that has come means that a missing one is lost.
-      for (const int64_t seq : seqs)
-        if (line == lines_.end() || (keyOf(line->second, seq) < 0 && line->second.newest_seq < seq))
-          return false;
-    }
-    return true;
-  }
+  if (scheduled != schedules_.end())
+    return released_.contains(round) ||
+           std::all_of(scheduled->second.begin(), scheduled->second.end(), [this](const auto& of_input) {
+             return std::all_of(of_input.second.begin(), of_input.second.end(),
+                                [&](int64_t seq) { return settled(of_input.first, seq); });
+           });
   return std::all_of(wants.begin(), wants.end(), [this](const auto& want) {
     const auto line = lines_.find(want.first);
     return line != lines_.end() &&
@@ -54,6 +69,7 @@ RoundJoiner::Joined RoundJoiner::take(int64_t round, const Wants& wants) {
   if (scheduled != schedules_.end()) {
     joined = takeScheduled(scheduled->second);
     schedules_.erase(schedules_.begin(), std::next(scheduled));
+    released_.erase(released_.begin(), released_.upper_bound(round));
     for (const auto& [input, key] : wants) {
       Line& line = lines_[input];
       line.closed_key = std::max(line.closed_key, key);

@@ -43,10 +43,19 @@ class RoundJoiner {
   void lost(const std::string& input, int64_t key);
   // A recorded run let exactly these outputs (input and seq) join this round: obeyed in place of the keys.
   void schedule(int64_t round, const std::vector<Output>& outputs);
+  // What the schedule of this round asks for and has not come will never come.
+  void releaseSchedule(int64_t round);
+  // Rounds are governed by schedules: what is late for its own round is kept, since a later one may ask for
+  // it.
+  void expectSchedules() { obeys_schedules_ = true; }
+  // Newest round that a schedule has come for; -1: none.
+  int64_t newestSchedule() const { return newest_schedule_; }
 
   bool ready(int64_t round, const Wants& wants) const;
   // Closes the round: hands out what joins it.
   Joined take(int64_t round, const Wants& wants);
+  // No round to come can use outputs up to this key.
+  void forget(const std::string& input, int64_t key);
 
  private:
   struct Line {
@@ -57,9 +66,14 @@ class RoundJoiner {
   };
   // Key of the held output with this number; -1: none.
   static int64_t keyOf(const Line& line, int64_t seq);
+  // The output has come, or a later one of its channel has, so that it never will.
+  bool settled(const std::string& input, int64_t seq) const;
   Joined takeScheduled(const std::map<std::string, std::set<int64_t>>& scheduled);
 
   Mode mode_;
+  bool obeys_schedules_ = false;
+  int64_t newest_schedule_ = -1;
+  std::set<int64_t> released_;  // rounds whose schedules wait for nothing any more
   std::map<std::string, Line> lines_;
   std::map<int64_t, std::map<std::string, std::set<int64_t>>> schedules_;  // round -> input -> seqs
 };

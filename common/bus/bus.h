@@ -28,6 +28,9 @@ class Bus {
   // Waits up to timeout_ms for messages and runs their handlers. Returns whether any ran. An exception that a
   // handler throws leaves this function once the transport's own code has returned.
   virtual bool dispatch(int timeout_ms) = 0;
+
+  // How often the process that speaks through this bus was restarted within the session.
+  virtual int64_t boot() const { return 0; }
 };
 
 // A channel that knows the type of its messages, so that the wrong type does not compile (see channels.h).

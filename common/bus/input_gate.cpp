@@ -21,10 +21,17 @@ bool InputGate::accept(const std::string& channel, const header_t& header, int64
     reject(channel, "from before a restart");
     return false;
   }
-  if (boot != boot_.end() && header.boot > boot->second) count.last_seq = -1;
+  if (boot != boot_.end() && header.boot > boot->second) {
+    // A process that resumes goes on with its numbers; one that cannot begins again.
+    if (header.seq <= count.last_seq) count.last_seq = -1;
+    ++count.restarts;
+    spdlog::warn("{}: the process that writes it was restarted", channel);
+  }
   boot_[channel] = header.boot;
-  if (header.seq <= count.last_seq) {
-    reject(channel, "repeated or out of order");
+  // Ends are sent several times, since a datagram may be lost; a network may do the same to any message.
+  if (header.seq == count.last_seq) return false;
+  if (header.seq < count.last_seq) {
+    reject(channel, "out of order");
     return false;
   }
   const int64_t lost = header.seq - count.last_seq - 1;
@@ -57,6 +64,9 @@ std::string InputGate::trouble() const {
   const auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   for (const auto& [channel, count] : counts_) {
     if (count.lost > 0) append(std::to_string(count.lost) + " message(s) of " + channel + " lost");
+    if (count.restarts > 0)
+      append("the process that writes " + channel + " was restarted " + std::to_string(count.restarts) +
+             " time(s)");
     const auto reasons = reasons_.find(channel);
     if (reasons == reasons_.end()) continue;
     for (const auto& [why, n] : reasons->second)

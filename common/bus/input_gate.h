@@ -15,11 +15,12 @@ struct ChannelCount {
   int64_t lost = 0;
   int64_t rejected = 0;
   int64_t last_seq = -1;
+  int64_t restarts = 0;  // of the process that writes the channel
 };
 
-// Checks the header of every message where it enters a process: messages of another session, repeated or old
-// ones are refused, jumps of the sequence number are counted as lost. Each kind of trouble is named once per
-// channel.
+// Checks the header of every message where it enters a process: messages of another session and old
+// ones are refused, the newest one's repetition is passed over, jumps of the sequence number are counted as
+// lost. Each kind of trouble is named once per channel.
 class InputGate {
  public:
   // Whether the message shall be worked on. `lost_before` (optional) receives the number of messages missing

@@ -14,16 +14,6 @@ namespace {
 constexpr size_t kBurstBytes = size_t{96} * 1024;
 constexpr auto kBurstPause = std::chrono::microseconds(1500);
 
-std::string withReceiveBuffer(std::string url) {
-  if (url.empty()) {
-    const char* from_environment = std::getenv("LCM_DEFAULT_URL");
-    url = from_environment && *from_environment ? from_environment : "udpm://239.255.76.67:7667?ttl=0";
-  }
-  if (url.rfind("udpm://", 0) == 0 && url.find("recv_buf_size") == std::string::npos)
-    url += (url.find('?') == std::string::npos ? "?" : "&") + std::string("recv_buf_size=4000000");
-  return url;
-}
-
 // LCM takes a regular expression: every character that is not plain is escaped.
 std::string literal(const std::string& channel) {
   std::string pattern;
@@ -35,6 +25,16 @@ std::string literal(const std::string& channel) {
 }
 
 }  // namespace
+
+std::string fullLcmUrl(std::string url) {
+  if (url.empty()) {
+    const char* from_environment = std::getenv("LCM_DEFAULT_URL");
+    url = from_environment && *from_environment ? from_environment : "udpm://239.255.76.67:7667?ttl=0";
+  }
+  if (url.rfind("udpm://", 0) == 0 && url.find("recv_buf_size") == std::string::npos)
+    url += (url.find('?') == std::string::npos ? "?" : "&") + std::string("recv_buf_size=4000000");
+  return url;
+}
 
 struct LcmBus::Subscription {
   LcmBus* bus;
@@ -51,7 +51,7 @@ struct LcmBus::Subscription {
 };
 
 LcmBus::LcmBus(const std::string& url) {
-  const std::string full = withReceiveBuffer(url);
+  const std::string full = fullLcmUrl(url);
   lcm_ = std::make_unique<lcm::LCM>(full);
   if (!lcm_->good())
     throw Error("cannot open the LCM bus '" + full + "': check the URL (udpm://239.255.76.67:7667?ttl=0, " +

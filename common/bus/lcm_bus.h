@@ -14,6 +14,9 @@ class LCM;
 
 namespace sgraphs {
 
+// The URL that LcmBus opens for `url`, for programs that are told theirs.
+std::string fullLcmUrl(std::string url);
+
 // LCM with any provider URL; empty: $LCM_DEFAULT_URL, else LCM's default. A udpm URL without recv_buf_size
 // gets one of 4 MB (the kernel grants twice net.core.rmem_max at most): LCM's default loses messages above
 // 115 kB. Queues are unbounded, and large datagrams are sent with a short pause between them, so that a

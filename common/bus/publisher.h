@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/bus/bus.h"
@@ -13,7 +14,8 @@ namespace sgraphs {
 // Stamps what a process writes: session, boot, and consecutive numbers per channel from 0.
 class Publisher {
  public:
-  explicit Publisher(Bus& bus, int64_t boot = 0) : bus_(bus), boot_(boot) {}
+  // boot: the bus's, unless given.
+  explicit Publisher(Bus& bus, std::optional<int64_t> boot = std::nullopt) : bus_(bus), boot_(boot) {}
 
   void setSession(int64_t session) { session_ = session; }
   int64_t session() const { return session_; }
@@ -22,7 +24,7 @@ class Publisher {
   template <typename Message>
   int64_t send(const Channel<Message>& channel, Message& message) {
     message.header.session = session_;
-    message.header.boot = boot_;
+    message.header.boot = boot_.value_or(bus_.boot());
     message.header.seq = ++last_seq_.try_emplace(channel.name, -1).first->second;
     publish(bus_, channel, message);
     return message.header.seq;
@@ -44,7 +46,7 @@ class Publisher {
 
  private:
   Bus& bus_;
-  int64_t boot_;
+  std::optional<int64_t> boot_;
   int64_t session_ = 0;
   std::map<std::string, int64_t> last_seq_;
 };

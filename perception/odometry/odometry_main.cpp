@@ -8,7 +8,8 @@ int main(int argc, char** argv) {
   const ProcessText text{"sgraphs-odometry", "Scans and the legs' odometry become poses and keyframes",
                          "sgraphs-odometry --lcm-url 'udpm://239.255.76.67:7667?ttl=0'", false};
   return runProcess(text, argc, argv, [&text](const ProcessSetup& setup) {
-    LcmBus bus(setup.lcm_url);
+    LcmBus lcm(setup.lcm_url);
+    JournalBus bus(lcm, setup.journal, setup.boot);
     OdometryNode node(bus, makeOdometryParts(setup.config), setup.odometry);
     LoopHooks hooks;
     hooks.done = [&node] { return node.done(); };

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Plays a log into the real processes, in a network namespace of its own where the machine allows one.
 #   play_log.sh BIN LOG OUT SPEED        BIN: folder of the programs; OUT: folder for what they write and say
+# PROCESS_OPTIONS in the environment: options of every process.
 # Leaves OUT/<process>.txt (stdout and stderr) and OUT/codes ("<backend> <free-space> <rooms> <loops>
 # <planes> <odometry>"). Fails with 99 if a process hangs, 98 if the machine has no multicast.
 set -u
@@ -22,10 +23,10 @@ RAW='SESSION|VELODYNE_PACKETS|LIDAR_POINTS|SPOT_ODOMETRY|ROUND_SCHEDULE|STREAM_E
 
 mkdir -p "$OUT"
 STAGES='free-space rooms loops planes odometry'
-"$BIN/sgraphs-backend" --lcm-url "$URL" -o "$OUT/result" >"$OUT/backend.txt" 2>&1 &
+"$BIN/sgraphs-backend" ${PROCESS_OPTIONS:-} --lcm-url "$URL" -o "$OUT/result" >"$OUT/backend.txt" 2>&1 &
 pids=$!
 for stage in $STAGES; do
-  "$BIN/sgraphs-$stage" --lcm-url "$URL" >"$OUT/$stage.txt" 2>&1 &
+  "$BIN/sgraphs-$stage" ${PROCESS_OPTIONS:-} --lcm-url "$URL" >"$OUT/$stage.txt" 2>&1 &
   pids="$pids $!"
 done
 trap 'kill -9 $pids 2>/dev/null' EXIT

@@ -18,6 +18,8 @@ void addLog(CLI::App& app);
 void addBench(CLI::App& app);
 void addSpy(CLI::App& app);
 void addSend(CLI::App& app);
+void addRun(CLI::App& app);
+void addDoctor(CLI::App& app);
 void addReserved(CLI::App& app);
 
 }  // namespace sgraphs::cli

@@ -13,6 +13,7 @@ constexpr char kExamples[] =
     "run.lcmlog\n"
     "  sgraphs replay run.lcmlog -o OUT\n"
     "  sgraphs eval OUT --truth truth\n"
+    "  sgraphs run --record recordings -o OUT\n"
     "Every command has --help with an example. Exit codes: 0 done, 1 failed, 2 wrong usage or configuration, "
     "3 done but not reproducible.";
 
@@ -36,6 +37,8 @@ int run(int argc, char** argv) {
   cli::addBench(app);
   cli::addSpy(app);
   cli::addSend(app);
+  cli::addRun(app);
+  cli::addDoctor(app);
   cli::addReserved(app);
   try {
     app.parse(argc, argv);

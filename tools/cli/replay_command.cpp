@@ -53,7 +53,7 @@ void report(const RunRecord& record, const std::string& out_dir) {
 std::vector<std::string> stagesOf(const Arguments& arguments) {
   if (arguments.layers == "keyframes") return {"odometry", "loops", "backend"};
   if (arguments.layers == "walls") return {"odometry", "planes", "loops", "backend"};
-  return {"odometry", "planes", "free-space", "rooms", "loops", "backend"};
+  return allStages();
 }
 
 void run(const Arguments& arguments) {

@@ -1,6 +1,7 @@
 #include "tools/system/replay.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "common/base/error.h"
@@ -62,6 +63,7 @@ void Replay::inspect() {
   bool has_session = false;
   int32_t schema = -1;
   std::string writer;
+  session_t recorded{};
   while (std::optional<LogEvent> event = reader.next()) {
     session_t session{};
     if (event->channel == channels::kRoundSchedule.name)
@@ -72,7 +74,7 @@ void Replay::inspect() {
       has_session = fromMessage(session).has_value();
       // Recorded where it stands: a recording that began at 0 could be played by nobody.
       now_us_ = event->timestamp_us;
-      if (has_session) feedSession(session);
+      if (has_session) feedSession(recorded = session);
     }
   }
   if (schema >= 0 && schema != kMessageSchema)
@@ -83,6 +85,12 @@ void Replay::inspect() {
     throw Error("log '" + options_.log +
                 "' holds no SESSION: it is no recording of this program; make one with " +
                 "`sgraphs convert` or `sgraphs simulate`");
+  if (!schedules.empty() && !obeysSchedule(recorded)) {
+    schedules.clear();
+    warnings_.push_back("log '" + options_.log +
+                        "' is of a live run with another configuration, odometry mode or choice of layers: "
+                        "its ROUND_SCHEDULE is not obeyed, rounds wait for all their inputs");
+  }
   for (LogEvent& event : schedules) {
     // Known from the beginning on.
     event.timestamp_us = now_us_;
@@ -97,12 +105,24 @@ void Replay::feed(const LogEvent& event) {
   odometry_bus_.dispatch(0);
 }
 
-// Every node sees the same SESSION, with the stages that this replay was asked for.
+// What joined a live round says something of the same stages with the same configuration only. The SESSION of
+// a live run tells which they were.
+bool Replay::obeysSchedule(const session_t& session) const {
+  const std::set<std::string> ours(options_.stages.begin(), options_.stages.end());
+  std::set<std::string> theirs(session.stages.begin(), session.stages.end());
+  const bool is_live = theirs.erase(BackendNode::kScheduleStage) > 0;
+  const bool same_stages = ours.empty() || theirs.empty() || ours == theirs;
+  const bool same_config = !is_live || session.config_digest == digestOf(options_.config);
+  const bool same_mode = options_.odometry.empty() || options_.odometry == session.odometry_mode;
+  return same_stages && same_config && same_mode;
+}
+
+// Every node sees the same SESSION, with the stages that this replay was asked for. Schedules, known before
+// the first round, are waited for by nobody.
 void Replay::feedSession(session_t session) {
-  if (!options_.stages.empty()) {
-    session.stages = options_.stages;
-    session.num_stages = static_cast<int32_t>(session.stages.size());
-  }
+  if (!options_.stages.empty()) session.stages = options_.stages;
+  std::erase(session.stages, BackendNode::kScheduleStage);
+  session.num_stages = static_cast<int32_t>(session.stages.size());
   publish(odometry_bus_, channels::kSession, session);
   odometry_bus_.dispatch(0);
 }

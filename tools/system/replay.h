@@ -50,6 +50,7 @@ class Replay {
   void inspect();
   void startRecording();
   void connect();
+  bool obeysSchedule(const session_t& session) const;
   void feed(const LogEvent& event);
   void feedSession(session_t session);
   void endWithoutStreamEnd();

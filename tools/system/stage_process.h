@@ -11,7 +11,8 @@ namespace sgraphs {
 template <typename Node, typename MakeStep>
 int runStageProcess(const ProcessText& text, int argc, char** argv, MakeStep make_step) {
   return runProcess(text, argc, argv, [make_step](const ProcessSetup& setup) {
-    LcmBus bus(setup.lcm_url);
+    LcmBus lcm(setup.lcm_url);
+    JournalBus bus(lcm, setup.journal, setup.boot);
     Node node(bus, make_step(setup.config));
     LoopHooks hooks;
     hooks.done = [&node] { return node.done(); };

@@ -11,6 +11,10 @@
 
 namespace sgraphs {
 
+std::vector<std::string> allStages() {
+  return {"odometry", "planes", "free-space", "rooms", "loops", "backend"};
+}
+
 OdometryParts makeOdometryParts(const SystemConfig& config, const std::shared_ptr<Vlp16Counts>& counts) {
   OdometryParts parts;
   parts.make_decoder = [counts] {

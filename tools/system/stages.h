@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "backend/backend_node.h"
 #include "drivers/velodyne/vlp16_decoder.h"
@@ -13,6 +14,9 @@
 #include "tools/system/system_config.h"
 
 namespace sgraphs {
+
+// The stages of the whole graph, as SESSION names them.
+std::vector<std::string> allStages();
 
 // The real cores for the nodes. `counts` (optional) receives what the VLP-16 decoder counted.
 OdometryParts makeOdometryParts(const SystemConfig& config,

@@ -8,6 +8,7 @@
 #include "perception/odometry/odometry_config.h"
 #include "perception/planes/planes_config.h"
 #include "perception/rooms/rooms_config.h"
+#include "tools/system/live_config.h"
 
 namespace sgraphs {
 
@@ -19,10 +20,12 @@ struct SystemConfig {
   RoomsConfig rooms;
   LoopsConfig loops;
   BackendConfig backend;
+  LiveConfig live;
   DriverConfig drivers;
 
   void visit(ConfigVisitor& v) {
     visitStages(v);
+    v.section("live", live, "Running live (`sgraphs-backend --live`, `sgraphs run`)");
     v.section("drivers", drivers, "The outside world on a robot: what is recorded, not what is made of it");
   }
 
@@ -38,7 +41,7 @@ struct SystemConfig {
 };
 
 // Identity of a configuration: all keys and values of the stages but the number of threads, which changes no
-// result.
+// result. Neither does the deadline of a live run: its every effect stands in ROUND_SCHEDULE.
 inline std::string digestOf(SystemConfig config) {
   config.odometry.threads = OdometryConfig{}.threads;
   return configDigest([&config](ConfigVisitor& v) { config.visitStages(v); });

@@ -52,15 +52,28 @@ TEST(InputGateTest, TheBeginningAndTheEndCanBeLost) {
   EXPECT_EQ(gate.counts().at("NEVER_SEEN").lost, 2);
 }
 
-TEST(InputGateTest, RepeatedAndOldMessagesAreRefused) {
+TEST(InputGateTest, OldMessagesAreRefused) {
   InputGate gate;
   for (const int64_t seq : {0, 1, 2}) gate.accept("A", header(seq));
-  EXPECT_FALSE(gate.accept("A", header(2)));
+  EXPECT_FALSE(gate.accept("A", header(1)));
   EXPECT_FALSE(gate.accept("A", header(0)));
   EXPECT_TRUE(gate.accept("A", header(3)));
   EXPECT_EQ(gate.counts().at("A").rejected, 2);
   EXPECT_EQ(gate.counts().at("A").lost, 0);
-  EXPECT_THAT(gate.trouble(), HasSubstr("2 message(s) of A refused (repeated or out of order)"));
+  EXPECT_THAT(gate.trouble(), HasSubstr("2 message(s) of A refused (out of order)"));
+}
+
+// Regression: a process repeats its end three times; a backend that still had rounds to run called the run
+// not reproducible for it.
+TEST(InputGateTest, TheNewestMessageOnceMoreIsPassedOverWithoutTrouble) {
+  InputGate gate;
+  EXPECT_TRUE(gate.accept("A", header(0)));
+  EXPECT_TRUE(gate.accept("A", header(1)));
+  EXPECT_FALSE(gate.accept("A", header(1)));
+  EXPECT_FALSE(gate.accept("A", header(1)));
+  EXPECT_EQ(gate.counts().at("A").accepted, 2);
+  EXPECT_EQ(gate.counts().at("A").rejected, 0);
+  EXPECT_EQ(gate.trouble(), "");
 }
 
 TEST(InputGateTest, OnlyTheOwnSessionPasses) {
@@ -82,6 +95,17 @@ TEST(InputGateTest, ARestartedPublisherCountsFromZeroAgain) {
   EXPECT_TRUE(gate.accept("A", header(1, 5, 1), &lost));
   EXPECT_EQ(lost, 1);
   EXPECT_FALSE(gate.accept("A", header(3, 5, 0)));
+  EXPECT_EQ(gate.counts().at("A").restarts, 1);
+  EXPECT_THAT(gate.trouble(), HasSubstr("the process that writes A was restarted 1 time(s)"));
+}
+
+TEST(InputGateTest, APublisherThatResumesGoesOnWithItsNumbers) {
+  InputGate gate;
+  for (const int64_t seq : {0, 1, 2}) gate.accept("A", header(seq));
+  int64_t lost = -1;
+  EXPECT_TRUE(gate.accept("A", header(4, 5, 1), &lost));
+  EXPECT_EQ(lost, 1);
+  EXPECT_EQ(gate.counts().at("A").restarts, 1);
 }
 
 TEST(InputGateTest, ChannelsAreCountedApart) {
