@@ -23,7 +23,7 @@ class CredentialsTest : public ::testing::Test {
     unsetenv("SGRAPHS_SPOT_PASSWORD");
   }
   std::string file(const std::string& text, mode_t mode) {
-    const std::string path = folder_ / "spot.env";
+    std::string path = folder_ / "spot.env";
     writeFile(path, text);
     chmod(path.c_str(), mode);
     return path;

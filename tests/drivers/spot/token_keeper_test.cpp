@@ -122,9 +122,7 @@ TEST(TokenKeeperTest, AGrantWithoutATokenIsNoAnswer) {
 
 TEST(BackoffTest, DoublesUpToTheLongest) {
   Backoff backoff({500}, {3000});
-  std::vector<int64_t> pauses;
-  for (int i = 0; i < 5; ++i) pauses.push_back(backoff.next().us);
-  EXPECT_EQ(pauses, (std::vector<int64_t>{500, 1000, 2000, 3000, 3000}));
+  for (const int64_t pause_us : {500, 1000, 2000, 3000, 3000}) EXPECT_EQ(backoff.next().us, pause_us);
   backoff.reset();
   EXPECT_EQ(backoff.next().us, 500);
 }
