@@ -47,7 +47,7 @@ std::vector<LayoutMatch> distinctOf(std::vector<LayoutMatch> matches, size_t max
                    [](const LayoutMatch& a, const LayoutMatch& b) { return a.score > b.score; });
   std::vector<LayoutMatch> kept;
   for (const LayoutMatch& m : matches) {
-    if (kept.size() >= max || m.score < kFarBelow * kept.front().score) break;
+    if (kept.size() >= max || (!kept.empty() && m.score < kFarBelow * kept.front().score)) break;
     if (std::all_of(kept.begin(), kept.end(), [&](const LayoutMatch& k) { return distinct(k, m); }))
       kept.push_back(m);
   }
