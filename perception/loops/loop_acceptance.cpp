@@ -33,22 +33,19 @@ LoopAcceptance::Change LoopAcceptance::step(const LoopVerdict& verdict, const Wa
   const LoopVerificationConfig& v = config_.verification;
   forget(path.walkedTo(verdict.keyframe), path);
   Change change;
+  // What else comes close to the best may be the true one as well.
   std::vector<const LoopHypothesis*> alike;
-  for (const LoopHypothesis& h : verdict.hypotheses) {
-    // What comes close to the limits may be another place as well.
-    LoopVerificationConfig loose = v;
-    loose.min_inlier_share -= v.rival_margin;
-    loose.max_conflict_share += 0.5 * v.rival_margin;
-    if (h.check.alike(loose)) alike.push_back(&h);
-  }
-  for (const LoopHypothesis* h : alike)
-    if (h->check.fixed(v)) possible_.push_back(h->loop);
-  if (!alike.empty() && alike.front()->check.alike(v) && alike.front()->check.fixed(v)) {
+  for (const LoopHypothesis& h : verdict.hypotheses)
+    if (h.check.quality() >= verdict.hypotheses.front().check.quality() - v.rival_margin) alike.push_back(&h);
+  const bool proven = !alike.empty() && alike.front()->check.alike(v) && alike.front()->check.fixed(v);
+  if (proven)
+    for (const LoopHypothesis* h : alike)
+      if (h->check.fixed(v)) possible_.push_back(h->loop);
+  if (proven && alike.size() == 1) {
     Candidate c;
     c.hypothesis = *alike.front();
-    c.lone = alike.size() == 1;
     c.likely = c.hypothesis.correction_m <= kLikelyFloor_m + config_.likely_share * c.hypothesis.gate_m;
-    if (c.lone) candidates_.push_back(c);
+    candidates_.push_back(c);
   }
   const size_t n = candidates_.size();
   if (n == 0) return change;

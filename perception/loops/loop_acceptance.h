@@ -27,7 +27,6 @@ class LoopAcceptance {
     LoopHypothesis hypothesis;
     bool accepted = false;
     bool likely = false;
-    bool lone = true;  // nothing else fitted at that keyframe
   };
   bool contradicted(const Candidate& candidate, const WalkedPath& path) const;
   void forget(double walked_m, const WalkedPath& path);

@@ -11,6 +11,7 @@ constexpr double kQueryReach_m = 12.0;  // walls around the robot that are laid 
 constexpr size_t kMaxWalls = 300;
 constexpr float kUprightNormal = 0.3F;
 constexpr double kAnchorReach_m = 3.0;  // from a match to the old place that stands for it
+constexpr double kDistortion_m = 3.0;   // of path on which a cloud's surroundings bend
 constexpr double kApart_m = 0.5;        // poses that are two
 constexpr double kApart_rad = 0.175;
 
@@ -148,7 +149,9 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
     LoopHypothesis h;
     h.check = checkLoop(query, it->second, anchor->T_map_body.inverse() * T_map_guess, config_.verification);
     ++verdict.registrations;
-    h.loop = {anchor->id, keyframe, h.check.T_anchor_body, h.check.covariance};
+    h.loop = {anchor->id, keyframe, h.check.T_anchor_body,
+              h.check.covariance + path.distortionAt(anchor->id, kDistortion_m) +
+                  path.distortionAt(keyframe, kDistortion_m)};
     const SE3 T_map_found = anchor->T_map_body * h.check.T_anchor_body;
     h.correction_m = (T_map_found.translation - T_map_body.translation).norm();
     h.gate_m = anchor->gate.radius_m;

@@ -36,7 +36,8 @@ struct LoopCheck {
   bool alike(const LoopVerificationConfig& config) const;
   // Its pose is known in all directions: no bare corridor.
   bool fixed(const LoopVerificationConfig& config) const;
-  double quality() const { return inlier_share - 2.0 * conflict_share; }
+  // Of two places that the newer look may show: which it shows rather.
+  double quality() const { return inlier_share - 2.0 * conflict_share + 0.25 * fit_share; }
 };
 
 // Registers the newer look against the old surroundings from a guess and compares what both saw through.

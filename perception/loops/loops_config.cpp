@@ -35,7 +35,7 @@ void LoopVerificationConfig::visit(ConfigVisitor& v) {
           "A loop whose place is known worse than this in any direction is refused: a bare corridor");
   v.field("max_sigma_rad", max_sigma_rad, 0.0001, 1.0, "The same of its rotation");
   v.field("rival_margin", rival_margin, 0.0, 1.0,
-          "Another place whose shares come this close makes the loop ambiguous");
+          "Another place whose quality comes this close makes the loop ambiguous");
   v.field("max_hypotheses", max_hypotheses, 1, 50, "Registrations per round at most");
   v.field("covariance_scale", covariance_scale, 0.1, 1e4, "Factor on the registration's covariance");
   v.field("floor_m", floor_m, 0.0, 1.0, "Added to it in quadrature: the old map's own distortion");

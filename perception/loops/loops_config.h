@@ -28,14 +28,14 @@ struct LoopVerificationConfig {
   double query_path_m = 4.0;
   double min_overlap = 0.35;
   double min_inlier_share = 0.85;
-  double max_conflict_share = 0.06;
+  double max_conflict_share = 0.03;
   double min_fit_share = 0.5;
   double max_sigma_m = 0.10;
   double max_sigma_rad = 0.02;
-  double rival_margin = 0.10;
+  double rival_margin = 0.08;
   int max_hypotheses = 6;
   double covariance_scale = 4.0;
-  double floor_m = 0.006;
+  double floor_m = 0.007;
   double floor_rad = 0.0015;
 
   void visit(ConfigVisitor& v);
@@ -48,7 +48,7 @@ struct LoopsConfig {
   double search_spacing_m = 1.0;
   double place_spacing_m = 0.8;
   double rival_memory_m = 20.0;
-  double likely_share = 0.25;
+  double likely_share = 0.10;
   LoopGateConfig gate;
   LoopVerificationConfig verification;
 

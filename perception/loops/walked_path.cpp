@@ -23,8 +23,14 @@ void WalkedPath::add(const Keyframe& keyframe) {
     Uncertainty& u = n.since_previous;
     u.walked_m = step_m;
     bool registered = false;
+    double best = std::numeric_limits<double>::infinity();
     for (const RelativePose& r : keyframe.relative_poses) {
-      if (r.kind != RelativePoseKind::kOdometry || r.from != previous.id) continue;
+      if (r.from != previous.id) continue;
+      if (r.covariance.trace() < best) {
+        best = r.covariance.trace();
+        n.variance = r.covariance.diagonal();
+      }
+      if (r.kind != RelativePoseKind::kOdometry) continue;
       registered = r.registered;
       u.variance_m2 = r.covariance.topLeftCorner<3, 3>().trace();
       u.variance_rad2 = r.covariance.bottomRightCorner<3, 3>().trace();
@@ -79,6 +85,17 @@ LoopGate WalkedPath::along(KeyframeId a, KeyframeId b) const {
   Uncertainty u;
   for (int i = first + 1; i <= last; ++i) u = u + nodes_.at(static_cast<size_t>(i)).since_previous;
   return grown(u);
+}
+
+Matrix6d WalkedPath::distortionAt(KeyframeId id, double reach_m) const {
+  const int here = indexOf(id);
+  const double at_m = node(id).walked_m;
+  Vector6d sum = Vector6d::Zero();
+  for (int i = here; i > 0 && at_m - nodes_[static_cast<size_t>(i)].walked_m < reach_m; --i)
+    sum += nodes_[static_cast<size_t>(i)].variance;
+  for (size_t i = static_cast<size_t>(here) + 1; i < nodes_.size() && nodes_[i].walked_m - at_m < reach_m; ++i)
+    sum += nodes_[i].variance;
+  return Matrix6d((0.5 * sum).asDiagonal());
 }
 
 WalkedPath::Gates WalkedPath::gatesFrom(KeyframeId id) const {
