@@ -45,7 +45,8 @@ LoopAcceptance::Change LoopAcceptance::step(const LoopVerdict& verdict, const Wa
     Candidate c;
     c.hypothesis = *alike.front();
     c.likely = c.hypothesis.correction_m <= kLikelyFloor_m + config_.likely_share * c.hypothesis.gate_m;
-    candidates_.push_back(c);
+    c.map_refuted = verdict.map_refuted;
+    if (c.likely || c.map_refuted) candidates_.push_back(c);
   }
   const size_t n = candidates_.size();
   if (n == 0) return change;

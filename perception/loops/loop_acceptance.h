@@ -26,7 +26,8 @@ class LoopAcceptance {
   struct Candidate {
     LoopHypothesis hypothesis;
     bool accepted = false;
-    bool likely = false;
+    bool likely = false;       // corrects little
+    bool map_refuted = false;  // the map's pose cannot be right
   };
   bool contradicted(const Candidate& candidate, const WalkedPath& path) const;
   void forget(double walked_m, const WalkedPath& path);

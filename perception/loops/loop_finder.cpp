@@ -44,7 +44,7 @@ class LoopFinder::Impl {
   void work(KeyframeId id, LoopClosures& loops) {
     // Little is learnt from loops that follow closely.
     if (path_.walkedTo(id) - looped_m_ < config_.spacing_m) return;
-    const LoopAcceptance::Change change = acceptance_.step(verdict, path_);
+    const LoopAcceptance::Change change = acceptance_.step(search_.step(id, memory_, path_), path_);
     for (size_t i = 0; i < change.accepted.size(); ++i) {
       const MeasuredLoop& m = change.accepted[i];
       LoopClosure loop;

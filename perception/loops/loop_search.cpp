@@ -12,6 +12,7 @@ constexpr size_t kMaxWalls = 300;
 constexpr float kUprightNormal = 0.3F;
 constexpr double kAnchorReach_m = 3.0;  // from a match to the old place that stands for it
 constexpr double kDistortion_m = 3.0;   // of path on which a cloud's surroundings bend
+constexpr double kSeenFrom_m = 4.0;     // from where an old place can tell what stands here
 constexpr double kApart_m = 0.5;        // poses that are two
 constexpr double kApart_rad = 0.175;
 
@@ -62,7 +63,7 @@ bool apart(const SE3& a, const SE3& b) {
 
 }  // namespace
 
-std::vector<LoopSearch::Anchor> LoopSearch::anchorsOf(KeyframeId keyframe, const PlaceMemory& memory,
+LoopSearch::Anchors LoopSearch::anchorsOf(KeyframeId keyframe, const PlaceMemory& memory,
                                                       const WalkedPath& path) const {
   const MapKeyframe& here = memory.poseOf(keyframe);
   const WalkedPath::Gates gates = path.gatesFrom(keyframe);
@@ -99,6 +100,18 @@ OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, KeyframeId keyf
   return OldSurroundings(std::move(places));
 }
 
+const LoopSearch::Anchor* LoopSearch::nearest(const Anchors& anchors, const Eigen::Vector2d& position_map,
+                                              double within_m) {
+  const Anchor* best = nullptr;
+  for (const Anchor& a : anchors) {
+    const double d = (a.T_map_body.translation.head<2>() - position_map).norm();
+    if (d >= within_m) continue;
+    within_m = d;
+    best = &a;
+  }
+  return best;
+}
+
 LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const {
   LoopVerdict verdict;
   verdict.keyframe = keyframe;
@@ -128,15 +141,7 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
       queryOf(keyframe, memory, path, config_.verification.query_path_m);
   std::map<KeyframeId, OldSurroundings> surroundings;
   for (const LayoutMatch& match : layout.search(queryWalls(query, T_map_body), where)) {
-    const Anchor* anchor = nullptr;
-    double nearest = kAnchorReach_m;
-    for (const Anchor& a : anchors) {
-      const double d = (a.T_map_body.translation.head<2>() - match.position_map).norm();
-      if (d < nearest) {
-        nearest = d;
-        anchor = &a;
-      }
-    }
+    const Anchor* anchor = nearest(anchors, match.position_map, kAnchorReach_m);
     if (!anchor || (match.position_map - where.centre_map).norm() > anchor->gate.radius_m ||
         std::abs(match.yaw_rad) > anchor->gate.yaw_rad + 0.05)
       continue;
@@ -169,6 +174,15 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
       kept.push_back(h);
   }
   verdict.hypotheses = std::move(kept);
+  if (!verdict.hypotheses.empty() && verdict.hypotheses.front().correction_m > kApart_m) {
+    if (const Anchor* anchor = nearest(anchors, where.centre_map, kSeenFrom_m)) {
+      const OldSurroundings around = surroundingsOf(*anchor, keyframe, memory, path);
+      const LoopCheck stays =
+          checkLoop(query, around, anchor->T_map_body.inverse() * T_map_body, config_.verification);
+      verdict.map_refuted = stays.refuted(config_.verification);
+      ++verdict.registrations;
+    }
+  }
   return verdict;
 }
 

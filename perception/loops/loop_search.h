@@ -20,6 +20,10 @@ struct LoopHypothesis {
 struct LoopVerdict {
   KeyframeId keyframe;
   std::vector<LoopHypothesis> hypotheses;  // distinct poses, best first
+  // The pose that the map has cannot be right: older places that it lies among contradict. Without that a
+  // return that corrects much is not believed: an office that is entered for the first time looks like the
+  // one next door.
+  bool map_refuted = false;
   int registrations = 0;
 };
 
@@ -37,7 +41,9 @@ class LoopSearch {
     SE3 T_map_body;
     LoopGate gate;
   };
-  std::vector<Anchor> anchorsOf(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
+  using Anchors = std::vector<Anchor>;
+  static const Anchor* nearest(const Anchors& anchors, const Eigen::Vector2d& position_map, double within_m);
+  Anchors anchorsOf(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
   OldSurroundings surroundingsOf(const Anchor& anchor, KeyframeId keyframe, const PlaceMemory& memory,
                                  const WalkedPath& path) const;
 

@@ -17,6 +17,8 @@ constexpr double kFree_m = 0.5;
 constexpr double kFree_rad = 0.2;
 constexpr size_t kSightPartners = 3;  // old keyframes that each newer one is compared with
 constexpr double kSightReach_m = 4.0;
+constexpr int kLeastSeen = 60;      // patches, before a conflict refutes anything
+constexpr double kRefuted = 1.7;  // times the conflict that a loop may have
 
 std::vector<Surfel> unpackedInto(const std::vector<PlacedPlace>& places) {
   std::vector<Surfel> out;
@@ -67,6 +69,10 @@ bool LoopCheck::fixed(const LoopVerificationConfig& config) const {
   return sigma_m <= config.max_sigma_m && sigma_rad <= config.max_sigma_rad;
 }
 
+bool LoopCheck::refuted(const LoopVerificationConfig& config) const {
+  return seen >= kLeastSeen && conflict_share >= kRefuted * config.max_conflict_share;
+}
+
 LoopCheck checkLoop(const std::vector<PlacedPlace>& query, const OldSurroundings& old, const SE3& guess,
                     const LoopVerificationConfig& config) {
   const std::vector<Surfel> patches = unpackedInto(query);
@@ -104,6 +110,7 @@ LoopCheck checkLoop(const std::vector<PlacedPlace>& query, const OldSurroundings
   check.overlap = newest.overlap();
   check.inlier_share = all.agreement();
   check.conflict_share = all.conflict();
+  check.seen = all.seen;
   return check;
 }
 

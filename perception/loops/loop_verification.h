@@ -29,6 +29,7 @@ struct LoopCheck {
   double inlier_share = 0;    // of what one side should see of the other, what it sees
   double conflict_share = 0;  // of the same, what stands where the other saw through
   double fit_share = 0;       // of the newer patches, what meets the old surfaces within the noise
+  int seen = 0;               // patches that the two shares are made of
   double sigma_m = 0;         // standard deviation of the worst direction
   double sigma_rad = 0;
 
@@ -36,6 +37,8 @@ struct LoopCheck {
   bool alike(const LoopVerificationConfig& config) const;
   // Its pose is known in all directions: no bare corridor.
   bool fixed(const LoopVerificationConfig& config) const;
+  // Cannot be the place: too much stands where the other saw through.
+  bool refuted(const LoopVerificationConfig& config) const;
   // Of two places that the newer look may show: which it shows rather.
   double quality() const { return inlier_share - 2.0 * conflict_share + 0.25 * fit_share; }
 };
