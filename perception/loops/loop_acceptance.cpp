@@ -7,9 +7,9 @@
 namespace sgraphs {
 namespace {
 
-constexpr size_t kMaxCandidates = 24;     // that are weighed against each other
-constexpr double kWait_m = 60.0;          // of path that a lone loop waits for a second one
-constexpr double kElsewhere_m = 1.5;      // of path between two looks that count as two
+constexpr size_t kMaxCandidates = 24;  // that are weighed against each other
+constexpr double kWait_m = 60.0;       // of path that a lone loop waits for a second one
+constexpr double kElsewhere_m = 1.5;   // of path between two looks that count as two
 constexpr double kLikelyFloor_m = 0.30;
 
 }  // namespace

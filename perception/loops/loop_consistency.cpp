@@ -37,8 +37,8 @@ bool consistent(const MeasuredLoop& a, const MeasuredLoop& b, const WalkedPath& 
   const SE3 cycle = a.T_from_to.inverse() * from_a_from_b * b.T_from_to * to_b_to_a;
   const LoopGate old_path = path.along(a.from, b.from);
   const LoopGate new_path = path.along(a.to, b.to);
-  const double rad = kBase_rad + old_path.yaw_rad + new_path.yaw_rad +
-                     kSigmas * std::hypot(sigmaOf(a, 3), sigmaOf(b, 3));
+  const double rad =
+      kBase_rad + old_path.yaw_rad + new_path.yaw_rad + kSigmas * std::hypot(sigmaOf(a, 3), sigmaOf(b, 3));
   // A loop's error of rotation moves what lies on the far side of the other path.
   const double lever_m = to_b_to_a.translation.norm();
   const double m = kBase_m + old_path.radius_m + new_path.radius_m +

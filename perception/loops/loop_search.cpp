@@ -10,10 +10,11 @@ namespace {
 constexpr double kQueryReach_m = 12.0;  // walls around the robot that are laid over the older ones
 constexpr size_t kMaxWalls = 300;
 constexpr float kUprightNormal = 0.3F;
-constexpr double kAnchorReach_m = 3.0;  // from a match to the old place that stands for it
-constexpr double kDistortion_m = 3.0;   // of path on which a cloud's surroundings bend
-constexpr double kSeenFrom_m = 4.0;     // from where an old place can tell what stands here
-constexpr double kApart_m = 0.5;        // poses that are two
+constexpr double kAnchorReach_m = 3.0;   // from a match to the old place that stands for it
+constexpr size_t kMaxSurroundings = 14;  // old places registered against, the nearest
+constexpr double kDistortion_m = 3.0;    // of path on which a cloud's surroundings bend
+constexpr double kSeenFrom_m = 4.0;      // from where an old place can tell what stands here
+constexpr double kApart_m = 0.5;         // poses that are two
 constexpr double kApart_rad = 0.175;
 
 double across(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -64,7 +65,7 @@ bool apart(const SE3& a, const SE3& b) {
 }  // namespace
 
 LoopSearch::Anchors LoopSearch::anchorsOf(KeyframeId keyframe, const PlaceMemory& memory,
-                                                      const WalkedPath& path) const {
+                                          const WalkedPath& path) const {
   const MapKeyframe& here = memory.poseOf(keyframe);
   const WalkedPath::Gates gates = path.gatesFrom(keyframe);
   std::vector<Anchor> anchors;
@@ -84,8 +85,8 @@ LoopSearch::Anchors LoopSearch::anchorsOf(KeyframeId keyframe, const PlaceMemory
   return anchors;
 }
 
-OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, KeyframeId keyframe, const PlaceMemory& memory,
-                                           const WalkedPath& path) const {
+OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, KeyframeId keyframe,
+                                           const PlaceMemory& memory, const WalkedPath& path) const {
   const SE3 T_anchor_map = anchor.T_map_body.inverse();
   const MapKeyframe& centre = memory.poseOf(anchor.id);
   std::vector<PlacedPlace> places;
@@ -97,6 +98,10 @@ OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, KeyframeId keyf
     if (T_anchor_body.translation.norm() > config_.verification.submap_radius_m) continue;
     places.push_back({&place, T_anchor_body});
   }
+  std::stable_sort(places.begin(), places.end(), [](const PlacedPlace& a, const PlacedPlace& b) {
+    return a.T_frame_body.translation.norm() < b.T_frame_body.translation.norm();
+  });
+  if (places.size() > kMaxSurroundings) places.resize(kMaxSurroundings);
   return OldSurroundings(std::move(places));
 }
 
@@ -137,8 +142,7 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
   }
   for (const WallPoint& w : wallsOf(old)) layout.add(w);
 
-  const std::vector<PlacedPlace> query =
-      queryOf(keyframe, memory, path, config_.verification.query_path_m);
+  const std::vector<PlacedPlace> query = queryOf(keyframe, memory, path, config_.verification.query_path_m);
   std::map<KeyframeId, OldSurroundings> surroundings;
   for (const LayoutMatch& match : layout.search(queryWalls(query, T_map_body), where)) {
     const Anchor* anchor = nearest(anchors, match.position_map, kAnchorReach_m);
@@ -149,8 +153,9 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
     if (it == surroundings.end())
       it = surroundings.emplace(anchor->id, surroundingsOf(*anchor, keyframe, memory, path)).first;
     // A body is carried at one height above the floor.
-    const SE3 T_map_guess(so3Exp({0, 0, match.yaw_rad}) * T_map_body.rotation,
-                          {match.position_map.x(), match.position_map.y(), anchor->T_map_body.translation.z()});
+    const SE3 T_map_guess(
+        so3Exp({0, 0, match.yaw_rad}) * T_map_body.rotation,
+        {match.position_map.x(), match.position_map.y(), anchor->T_map_body.translation.z()});
     LoopHypothesis h;
     h.check = checkLoop(query, it->second, anchor->T_map_body.inverse() * T_map_guess, config_.verification);
     ++verdict.registrations;

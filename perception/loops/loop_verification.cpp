@@ -3,12 +3,16 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace sgraphs {
 namespace {
 
 constexpr double kMerge_m = 0.08;
+constexpr size_t kMaxMapPatches = 6000;
+constexpr size_t kMaxPatches = 1200;  // of the newer look
+constexpr size_t kWidePatches = 400;  // of these for the first, wide registration
 // The guess comes from a grid of a quarter metre.
 constexpr double kWideGate_m = 0.60;
 constexpr int kWideIterations = 20;
@@ -17,14 +21,19 @@ constexpr double kFree_m = 0.5;
 constexpr double kFree_rad = 0.2;
 constexpr size_t kSightPartners = 3;  // old keyframes that each newer one is compared with
 constexpr double kSightReach_m = 4.0;
-constexpr int kLeastSeen = 60;      // patches, before a conflict refutes anything
+constexpr int kLeastSeen = 60;    // patches, before a conflict refutes anything
 constexpr double kRefuted = 1.7;  // times the conflict that a loop may have
 
-std::vector<Surfel> unpackedInto(const std::vector<PlacedPlace>& places) {
+// All patches in the places' common frame, evenly thinned to `max`.
+std::vector<Surfel> unpackedInto(std::span<const PlacedPlace> places, size_t max) {
+  size_t total = 0, i = 0;
+  for (const PlacedPlace& p : places) total += p.place->patches.size();
   std::vector<Surfel> out;
   for (const PlacedPlace& p : places) {
     const Eigen::Matrix3d R = p.T_frame_body.matrix3();
     for (const PackedPatch& patch : p.place->patches) {
+      const size_t before = i * max / std::max(total, max);
+      if (++i * max / std::max(total, max) == before) continue;
       Surfel s = patch.unpack();
       s.mean = p.T_frame_body * s.mean;
       s.normal = R * s.normal;
@@ -57,7 +66,7 @@ double worstSigma(const Matrix6d& covariance, Eigen::Index offset) {
 
 OldSurroundings::OldSurroundings(std::vector<PlacedPlace> places_anchor)
     : places_(std::move(places_anchor)), map_(RegistrationConfig().cell_m) {
-  for (const Surfel& s : unpackedInto(places_)) map_.insert(s, SE3(), kMerge_m);
+  for (const Surfel& s : unpackedInto(places_, kMaxMapPatches)) map_.insert(s, SE3(), kMerge_m);
 }
 
 bool LoopCheck::alike(const LoopVerificationConfig& config) const {
@@ -75,7 +84,8 @@ bool LoopCheck::refuted(const LoopVerificationConfig& config) const {
 
 LoopCheck checkLoop(const std::vector<PlacedPlace>& query, const OldSurroundings& old, const SE3& guess,
                     const LoopVerificationConfig& config) {
-  const std::vector<Surfel> patches = unpackedInto(query);
+  const std::vector<Surfel> few = unpackedInto(query, kWidePatches);
+  const std::vector<Surfel> patches = unpackedInto(query, kMaxPatches);
   Vector6d free;
   free << Eigen::Vector3d::Constant(kFree_m * kFree_m), Eigen::Vector3d::Constant(kFree_rad * kFree_rad);
   const Matrix6d prior = free.cwiseInverse().asDiagonal();
@@ -84,7 +94,7 @@ LoopCheck checkLoop(const std::vector<PlacedPlace>& query, const OldSurroundings
   RegistrationConfig registration;
   registration.gate_m = kWideGate_m;
   registration.max_iterations = kWideIterations;
-  registerRigid(patches, old.map(), prior, registration, 1, check.T_anchor_body);
+  registerRigid(few, old.map(), prior, registration, 1, check.T_anchor_body);
   const RegistrationResult result =
       registerRigid(patches, old.map(), prior, RegistrationConfig(), 1, check.T_anchor_body);
   if (!check.T_anchor_body.isFinite()) return {};

@@ -22,7 +22,8 @@ void LoopVerificationConfig::visit(ConfigVisitor& v) {
   v.field("submap_radius_m", submap_radius_m, 1.0, 100.0, "Reach of the old surroundings registered against");
   v.field("submap_path_m", submap_path_m, 0.0, 1000.0,
           "Path before and behind an old place that makes up its surroundings");
-  v.field("query_path_m", query_path_m, 0.0, 100.0, "Path behind the robot whose clouds are registered at once");
+  v.field("query_path_m", query_path_m, 0.0, 100.0,
+          "Path behind the robot whose clouds are registered at once");
   v.field("min_overlap", min_overlap, 0.0, 1.0,
           "Share of a cloud's patches that the other's keyframes must be able to show");
   v.field("min_inlier_share", min_inlier_share, 0.0, 1.0,

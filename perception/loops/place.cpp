@@ -10,8 +10,10 @@ constexpr double kOnePlace_m = 1.5;
 constexpr double kNeighbour_m = 6.0;
 
 std::vector<PackedPatch> packed(const Keyframe& keyframe) {
+  const std::vector<Surfel> patches = patchesOf(keyframe, kMaxUpright, kMaxLevel);
   std::vector<PackedPatch> out;
-  for (const Surfel& s : patchesOf(keyframe, kMaxUpright, kMaxLevel)) out.emplace_back(s);
+  out.reserve(patches.size());
+  for (const Surfel& s : patches) out.emplace_back(s);
   return out;
 }
 
@@ -40,10 +42,10 @@ bool PlaceMemory::redundant(KeyframeId id, const WalkedPath& path) const {
     if (other_id >= id) break;
     const auto other = map_.find(other_id);
     if (other == map_.end() || other->second.floor != here->second.floor) continue;
-    const double apart =
-        (other->second.T_map_body.translation - here->second.T_map_body.translation).norm();
+    const double apart = (other->second.T_map_body.translation - here->second.T_map_body.translation).norm();
     if (apart > spacing_m_) continue;
-    if (path.walkedTo(id) - path.walkedTo(other_id) < kNeighbour_m || gates.at(other_id).radius_m < kOnePlace_m)
+    if (path.walkedTo(id) - path.walkedTo(other_id) < kNeighbour_m ||
+        gates.at(other_id).radius_m < kOnePlace_m)
       return true;
   }
   return false;

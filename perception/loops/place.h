@@ -28,12 +28,13 @@ struct PlacedPlace {
   SE3 T_frame_body;
 };
 
-// Remembered places, with their poses in the present map. One per `place_spacing_m` of explored space: what is
-// seen again from where it was seen before is forgotten once it lies off the newest path, so that memory grows
-// with the building and not with the time spent in it.
+// Remembered places, with their poses in the present map. One per `place_spacing_m` of explored space: what
+// is seen again from where it was seen before is forgotten once it lies off the newest path, so that memory
+// grows with the building and not with the time spent in it.
 class PlaceMemory {
  public:
-  PlaceMemory(double spacing_m, double newest_path_m) : spacing_m_(spacing_m), newest_path_m_(newest_path_m) {}
+  PlaceMemory(double spacing_m, double newest_path_m)
+      : spacing_m_(spacing_m), newest_path_m_(newest_path_m) {}
 
   void apply(const MapUpdate& update);
   // The newest keyframe; `path` holds it already.

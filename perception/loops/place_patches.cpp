@@ -73,8 +73,7 @@ std::vector<Surfel> patchesOf(const Keyframe& keyframe, size_t max_upright, size
   std::vector<Cubes> levels;
   for (const Level& level : kLevels) levels.emplace_back(level.cube_m);
   for (const KeyframePoint& p : keyframe.points) {
-    const Eigen::Vector3d viewpoint =
-        keyframe.T_keyframe_body[p.scan] * keyframe.T_body_lidar.translation;
+    const Eigen::Vector3d viewpoint = keyframe.T_keyframe_body[p.scan] * keyframe.T_body_lidar.translation;
     const Eigen::Vector3d point = p.position_body.cast<double>();
     const double range = (point - viewpoint).norm();
     for (size_t i = 0; i < kLevels.size(); ++i) {

@@ -13,8 +13,8 @@ constexpr float kAgree_m = 0.20F;
 constexpr float kAgreeShare = 0.04F;
 constexpr float kConflict_m = 0.50F;
 constexpr float kConflictShare = 0.06F;
-constexpr int kMinFilled = 5;       // of the nine pixels about a direction, to say that it is seen through
-constexpr float kNear_m = 1.0F;     // nearer things shift too much within the metre
+constexpr int kMinFilled = 5;         // of the nine pixels about a direction, to say that it is seen through
+constexpr float kNear_m = 1.0F;       // nearer things shift too much within the metre
 constexpr float kViewpoint_m = 0.6F;  // points seen from farther off the keyframe's own place do not count
 
 }  // namespace
@@ -31,9 +31,10 @@ Sight::Sight(const Keyframe& keyframe)
     const Eigen::Vector3f ray = p.position_body - lidar_body_;
     const float range = ray.norm();
     const float across = std::hypot(ray.x(), ray.y());
-    const auto e = static_cast<int>(std::floor(std::atan2(ray.z(), across) / kElevationStep_rad)) + kElevations / 2;
+    const auto e =
+        static_cast<int>(std::floor(std::atan2(ray.z(), across) / kElevationStep_rad)) + kElevations / 2;
     if (e < 0 || e >= kElevations) continue;
-    const float turn = std::atan2(ray.y(), ray.x()) / (2.0F * std::numbers::pi_v<float>) + 0.5F;
+    const float turn = std::atan2(ray.y(), ray.x()) / (2.0F * std::numbers::pi_v<float>)+0.5F;
     const int a = std::min(static_cast<int>(turn * kAzimuths), kAzimuths - 1);
     const auto cm = static_cast<uint16_t>(std::clamp(100.0F * range, 1.0F, 65535.0F));
     Pixel& pixel = pixels_[static_cast<size_t>(e * kAzimuths + a)];
@@ -58,9 +59,10 @@ SightCounts Sight::compare(std::span<const PackedPatch> patches, const SE3& T_bo
     // What shows us its back is another face than the one we see; a grazing ray says little of either.
     if (range < kNear_m || -ray.dot(R * patch.normal()) < 0.15F * range) continue;
     const float across = std::hypot(ray.x(), ray.y());
-    const auto e = static_cast<int>(std::floor(std::atan2(ray.z(), across) / kElevationStep_rad)) + kElevations / 2;
+    const auto e =
+        static_cast<int>(std::floor(std::atan2(ray.z(), across) / kElevationStep_rad)) + kElevations / 2;
     if (e < 0 || e >= kElevations) continue;
-    const float turn = std::atan2(ray.y(), ray.x()) / (2.0F * std::numbers::pi_v<float>) + 0.5F;
+    const float turn = std::atan2(ray.y(), ray.x()) / (2.0F * std::numbers::pi_v<float>)+0.5F;
     const auto a = static_cast<int>(turn * kAzimuths);
     const float agree = kAgree_m + kAgreeShare * range;
     const float conflict = kConflict_m + kConflictShare * range;

@@ -42,7 +42,7 @@ class Sight {
 
  private:
   static constexpr int kAzimuths = 180;
-  static constexpr int kElevations = 20;
+  static constexpr int kElevations = 16;
   static constexpr float kElevationStep_rad = 0.05236F;  // 3 degrees
 
   struct Pixel {

@@ -23,18 +23,20 @@ void WalkedPath::add(const Keyframe& keyframe) {
     Uncertainty& u = n.since_previous;
     u.walked_m = step_m;
     bool registered = false;
+    Vector6d variance = Vector6d::Zero();
     double best = std::numeric_limits<double>::infinity();
     for (const RelativePose& r : keyframe.relative_poses) {
       if (r.from != previous.id) continue;
       if (r.covariance.trace() < best) {
         best = r.covariance.trace();
-        n.variance = r.covariance.diagonal();
+        variance = r.covariance.diagonal();
       }
       if (r.kind != RelativePoseKind::kOdometry) continue;
       registered = r.registered;
       u.variance_m2 = r.covariance.topLeftCorner<3, 3>().trace();
       u.variance_rad2 = r.covariance.bottomRightCorner<3, 3>().trace();
     }
+    if (!registered) n.variance = variance;
     u.share_m = step_m * (registered ? config_.registered_share : config_.legs_share);
     u.share_rad = step_m * (registered ? config_.registered_rad_per_m : config_.legs_rad_per_m);
     n.walked_m = previous.walked_m + step_m;
@@ -93,7 +95,8 @@ Matrix6d WalkedPath::distortionAt(KeyframeId id, double reach_m) const {
   Vector6d sum = Vector6d::Zero();
   for (int i = here; i > 0 && at_m - nodes_[static_cast<size_t>(i)].walked_m < reach_m; --i)
     sum += nodes_[static_cast<size_t>(i)].variance;
-  for (size_t i = static_cast<size_t>(here) + 1; i < nodes_.size() && nodes_[i].walked_m - at_m < reach_m; ++i)
+  for (size_t i = static_cast<size_t>(here) + 1; i < nodes_.size() && nodes_[i].walked_m - at_m < reach_m;
+       ++i)
     sum += nodes_[i].variance;
   return Matrix6d((0.5 * sum).asDiagonal());
 }

@@ -44,8 +44,9 @@ class WalkedPath {
   };
   Gates gatesFrom(KeyframeId id) const;
 
-  // Covariance of a body's pose within its own surroundings, which are made of the clouds along `reach_m` of path
-  // to either side: what the measurements between them leave open, half of it.
+  // Covariance of a body's pose within its own surroundings, which are made of the clouds along `reach_m` of
+  // path to either side: what the measurements between them leave open, half of it. Nothing where the
+  // odometry was registered: a local map does not bend so.
   Matrix6d distortionAt(KeyframeId id, double reach_m) const;
 
   // What the odometry alone between two keyframes may err by; no loops, no base.
@@ -66,7 +67,8 @@ class WalkedPath {
     double walked_m = 0;
     SE3 T_odom_body;
     Uncertainty since_previous;
-    Vector6d variance = Vector6d::Zero();  // of the best measurement against the previous one
+    Vector6d variance =
+        Vector6d::Zero();  // of the best measurement against the previous one; zero if registered
     std::vector<int> linked;
   };
   int indexOf(KeyframeId id) const;

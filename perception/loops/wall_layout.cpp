@@ -12,13 +12,14 @@ constexpr int kHeadings = 16;
 constexpr float kHeading_rad = 2.0F * std::numbers::pi_v<float> / kHeadings;
 constexpr double kCoarseStep_m = 0.5;
 constexpr double kCoarseStep_rad = 0.0524;  // 3 degrees
+constexpr size_t kCoarseWalls = 120;
 constexpr double kFineStep_m = 0.125;
 constexpr double kFineStep_rad = 0.0175;
 constexpr int kFineSteps = 3;  // to either side
 constexpr double kApart_m = 0.75;
 constexpr double kApart_rad = 0.175;
-constexpr size_t kMaxPeaks = 24;      // that are refined
-constexpr double kFarBelow = 0.7;     // of the best score: no match
+constexpr size_t kMaxPeaks = 24;   // that are refined
+constexpr double kFarBelow = 0.7;  // of the best score: no match
 constexpr double kLeastScore = 0.35;
 
 int headingOf(float rad) {
@@ -38,7 +39,8 @@ double angleBetween(double a, double b) {
 }
 
 bool distinct(const LayoutMatch& a, const LayoutMatch& b) {
-  return (a.position_map - b.position_map).norm() > kApart_m || angleBetween(a.yaw_rad, b.yaw_rad) > kApart_rad;
+  return (a.position_map - b.position_map).norm() > kApart_m ||
+         angleBetween(a.yaw_rad, b.yaw_rad) > kApart_rad;
 }
 
 // Best first; of those that are not distinct only the best.
@@ -52,6 +54,13 @@ std::vector<LayoutMatch> distinctOf(std::vector<LayoutMatch> matches, size_t max
       kept.push_back(m);
   }
   return kept;
+}
+
+std::vector<WallPoint> thinned(const std::vector<WallPoint>& walls, size_t max) {
+  const size_t n = std::min(walls.size(), max);
+  std::vector<WallPoint> out;
+  for (size_t i = 0; i < n; ++i) out.push_back(walls[i * walls.size() / n]);
+  return out;
 }
 
 // The query turned by one yaw.
@@ -110,10 +119,11 @@ std::vector<LayoutMatch> WallLayout::search(const std::vector<WallPoint>& query,
   };
   const int turns = static_cast<int>(std::ceil(where.yaw_range_rad / kCoarseStep_rad));
   const int steps = static_cast<int>(std::ceil(where.radius_m / kCoarseStep_m));
+  const std::vector<WallPoint> few = thinned(query, kCoarseWalls);
   std::vector<LayoutMatch> peaks;
   for (int k = -turns; k <= turns; ++k) {
     const double yaw = where.yaw_rad + k * kCoarseStep_rad;
-    const std::vector<Turned> walls = turned(query, yaw);
+    const std::vector<Turned> walls = turned(few, yaw);
     for (int iy = -steps; iy <= steps; ++iy)
       for (int ix = -steps; ix <= steps; ++ix) {
         const Eigen::Vector2d d(ix * kCoarseStep_m, iy * kCoarseStep_m);

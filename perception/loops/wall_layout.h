@@ -27,9 +27,9 @@ struct LayoutSearch {
   int max_matches = 6;
 };
 
-// The walls about an old place from above, in which a newer look at walls is sought: the appearance that finds
-// and aligns returns where the pose alone is off by metres. Rooms that look alike give several matches, which
-// is what tells that a return is ambiguous.
+// The walls about an old place from above, in which a newer look at walls is sought: the appearance that
+// finds and aligns returns where the pose alone is off by metres. Rooms that look alike give several matches,
+// which is what tells that a return is ambiguous.
 class WallLayout {
  public:
   // Walls farther than half_size_m from the centre in x or y are left out.

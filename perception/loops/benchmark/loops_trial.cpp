@@ -15,8 +15,8 @@
 #include "lcmtypes/convert/chunks.h"
 #include "lcmtypes/convert/convert_layers.h"
 #include "lcmtypes/convert/keyframe_assembly.h"
-#include "perception/loops/loop_search.h"
 #include "perception/loops/loop_finder.h"
+#include "perception/loops/loop_search.h"
 
 namespace sgraphs {
 namespace {
@@ -87,7 +87,8 @@ class DriftingMap {
       if (!poses_.empty()) {
         SE3 step = last_.inverse() * k.T_map_body;
         const double m = step.translation.norm();
-        step = SE3(step.rotation * so3Exp({0, 0, drift_.yaw_rad_per_m * m}), (1.0 + drift_.scale) * step.translation);
+        step = SE3(step.rotation * so3Exp({0, 0, drift_.yaw_rad_per_m * m}),
+                   (1.0 + drift_.scale) * step.translation);
         drifted.T_map_body = poses_.rbegin()->second.T_map_body * step;
         odometry_ = odometry_ * step;
       }
@@ -109,8 +110,7 @@ class DriftingMap {
     const SE3 correction = target * poses_.at(loop.pose.to).T_map_body.inverse();
     const double span = static_cast<double>(loop.pose.to.value - loop.pose.from.value);
     for (auto& [id, k] : poses_) {
-      const double share =
-          std::clamp(static_cast<double>(id.value - loop.pose.from.value) / span, 0.0, 1.0);
+      const double share = std::clamp(static_cast<double>(id.value - loop.pose.from.value) / span, 0.0, 1.0);
       k.T_map_body = interpolate(SE3(), correction, share) * k.T_map_body;
     }
   }
@@ -123,11 +123,13 @@ class DriftingMap {
 };
 
 SE3 truthAt(const std::vector<StampedPose>& truth, Time t) {
-  auto it = std::lower_bound(truth.begin(), truth.end(), t, [](const StampedPose& p, Time x) { return p.time < x; });
+  auto it = std::lower_bound(truth.begin(), truth.end(), t,
+                             [](const StampedPose& p, Time x) { return p.time < x; });
   if (it == truth.begin()) return it->pose;
   if (it == truth.end()) return truth.back().pose;
   const auto before = it - 1;
-  const double s = static_cast<double>((t - before->time).us) / static_cast<double>((it->time - before->time).us);
+  const double s =
+      static_cast<double>((t - before->time).us) / static_cast<double>((it->time - before->time).us);
   return interpolate(before->pose, it->pose, s);
 }
 
@@ -156,7 +158,8 @@ int run(const std::string& log, const std::string& truth_dir, const Drift& drift
     withdrawn += static_cast<int>(loops.withdrawn.size());
     for (const LoopId id : loops.withdrawn) std::printf("withdrawn %s\n", id.str().c_str());
     for (const LoopClosure& loop : loops.accepted) {
-      const SE3 T_true = truthAt(truth, times[loop.pose.from]).inverse() * truthAt(truth, times[loop.pose.to]);
+      const SE3 T_true =
+          truthAt(truth, times[loop.pose.from]).inverse() * truthAt(truth, times[loop.pose.to]);
       const SE3 T_map = poses[loop.pose.from].inverse() * poses[loop.pose.to];
       const Vector6d e = se3Log(T_true.inverse() * loop.pose.T_from_to);
       const double m = e.head<3>().norm(), rad = e.tail<3>().norm();
@@ -170,10 +173,11 @@ int run(const std::string& log, const std::string& truth_dir, const Drift& drift
       nees_t += t;
       nees_r += r;
       if (verbose || m > 0.3 || rad > 0.0873)
-        std::printf("%s %s->%s drift %.3f m, error %.4f m %.3f deg, nees %.2f %.2f, overlap %.2f inliers %.3f%s\n",
-                    loop.id.str().c_str(), loop.pose.from.str().c_str(), loop.pose.to.str().c_str(),
-                    (T_true.translation - T_map.translation).norm(), m, rad * 57.2958, t, r, loop.overlap,
-                    loop.inlier_share, m > 0.3 || rad > 0.0873 ? " FALSE" : "");
+        std::printf(
+            "%s %s->%s drift %.3f m, error %.4f m %.3f deg, nees %.2f %.2f, overlap %.2f inliers %.3f%s\n",
+            loop.id.str().c_str(), loop.pose.from.str().c_str(), loop.pose.to.str().c_str(),
+            (T_true.translation - T_map.translation).norm(), m, rad * 57.2958, t, r, loop.overlap,
+            loop.inlier_share, m > 0.3 || rad > 0.0873 ? " FALSE" : "");
       map.close(loop);
     }
   }
@@ -182,9 +186,12 @@ int run(const std::string& log, const std::string& truth_dir, const Drift& drift
   double sum = 0;
   for (const double x : ms) sum += x;
   const double n = std::max(1, accepted);
-  std::printf("%s: %d accepted, %d false, %d withdrawn; error median %.4f max %.4f m; NEES %.2f %.2f; round p50 %.1f p99 %.1f max %.1f mean %.1f ms; %zu rounds\n",
-              log.c_str(), accepted, wrong, withdrawn, errors_m.empty() ? 0.0 : errors_m[errors_m.size() / 2], worst_m, nees_t / n, nees_r / n, ms[ms.size() / 2],
-              ms[ms.size() * 99 / 100], ms.back(), sum / static_cast<double>(ms.size()), ms.size());
+  std::printf(
+      "%s: %d accepted, %d false, %d withdrawn; error median %.4f max %.4f m; NEES %.2f %.2f; round p50 %.1f "
+      "p99 %.1f max %.1f mean %.1f ms; %zu rounds\n",
+      log.c_str(), accepted, wrong, withdrawn, errors_m.empty() ? 0.0 : errors_m[errors_m.size() / 2],
+      worst_m, nees_t / n, nees_r / n, ms[ms.size() / 2], ms[ms.size() * 99 / 100], ms.back(),
+      sum / static_cast<double>(ms.size()), ms.size());
   return wrong > 0;
 }
 
