@@ -1,17 +1,93 @@
 #include "perception/loops/loop_finder.h"
 
+#include <algorithm>
+#include <deque>
+#include <map>
+
+#include "perception/loops/loop_acceptance.h"
+
 namespace sgraphs {
 
-class LoopFinder::Impl {};
+class LoopFinder::Impl {
+ public:
+  explicit Impl(const LoopsConfig& config)
+      : config_(config),
+        path_(config.gate),
+        memory_(config.place_spacing_m, std::max(config.verification.query_path_m, config.gate.min_walked_m)),
+        search_(config),
+        acceptance_(config) {}
 
-LoopFinder::LoopFinder(const LoopsConfig&) : impl_(std::make_unique<Impl>()) {}
+  LoopClosures step(const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
+    LoopClosures loops;
+    loops.round = update.round;
+    loops.time = update.time;
+    if (!config_.enabled) return loops;
+    memory_.apply(update);
+    if (keyframe && !keyframe->points.empty() && memory_.known(keyframe->id)) {
+      path_.add(*keyframe);
+      memory_.add(*keyframe, path_);
+      const double walked_m = path_.walkedTo(keyframe->id);
+      if (walked_m - searched_m_ >= config_.search_spacing_m) {
+        searched_m_ = walked_m;
+        waiting_.push_back(keyframe->id);
+      }
+    }
+    if (!waiting_.empty()) {
+      work(waiting_.front(), loops);
+      waiting_.pop_front();
+    }
+    loops.searching = !waiting_.empty();
+    return loops;
+  }
+
+ private:
+  void work(KeyframeId id, LoopClosures& loops) {
+    // Little is learnt from loops that follow closely.
+    if (path_.walkedTo(id) - looped_m_ < config_.spacing_m) return;
+    const LoopAcceptance::Change change = acceptance_.step(search_.step(id, memory_, path_), path_);
+    for (size_t i = 0; i < change.accepted.size(); ++i) {
+      const MeasuredLoop& m = change.accepted[i];
+      LoopClosure loop;
+      loop.id = LoopId{next_id_++};
+      loop.pose.kind = RelativePoseKind::kLoop;
+      loop.pose.from = m.from;
+      loop.pose.to = m.to;
+      loop.pose.T_from_to = m.T_from_to;
+      loop.pose.covariance = m.covariance;
+      loop.overlap = std::clamp(change.evidence[i].check.overlap, 0.0, 1.0);
+      loop.inlier_share = std::clamp(change.evidence[i].check.inlier_share, 0.0, 1.0);
+      loops.accepted.push_back(loop);
+      ids_[{m.from, m.to}] = loop.id;
+      path_.link(m.from, m.to);
+      looped_m_ = std::max(looped_m_, path_.walkedTo(m.to));
+    }
+    for (const MeasuredLoop& m : change.withdrawn) {
+      const auto it = ids_.find({m.from, m.to});
+      if (it == ids_.end()) continue;
+      loops.withdrawn.push_back(it->second);
+      ids_.erase(it);
+      path_.unlink(m.from, m.to);
+    }
+    std::sort(loops.withdrawn.begin(), loops.withdrawn.end());
+  }
+
+  LoopsConfig config_;
+  WalkedPath path_;
+  PlaceMemory memory_;
+  LoopSearch search_;
+  LoopAcceptance acceptance_;
+  std::deque<KeyframeId> waiting_;
+  std::map<std::pair<KeyframeId, KeyframeId>, LoopId> ids_;
+  int64_t next_id_ = 0;
+  double searched_m_ = 0;
+  double looped_m_ = -1e9;  // where on the path the newest loop was accepted
+};
+
+LoopFinder::LoopFinder(const LoopsConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 LoopFinder::~LoopFinder() = default;
 
-LoopClosures LoopFinder::step(const std::optional<Keyframe>&, const MapUpdate& update) {
-  LoopClosures none;
-  none.round = update.round;
-  none.time = update.time;
-  return none;
+LoopClosures LoopFinder::step(const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
+  return impl_->step(keyframe, update);
 }
 
 }  // namespace sgraphs

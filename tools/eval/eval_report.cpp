@@ -48,6 +48,13 @@ std::string calibrationLines(const Evaluation& evaluation) {
   return lines;
 }
 
+std::string loopLine(const LoopResult& loops) {
+  return format(
+      "loops     %zu accepted, %zu of them false; off by %.4f m in the median, %.4f at most; %zu of %zu "
+      "returns missed\n",
+      loops.accepted, loops.wrong, loops.median_m, loops.max_m, loops.missed, loops.revisits);
+}
+
 std::string faceCounts(const WallResult::Counts& c) {
   return format("%zu found, %zu missed, %zu doubled", c.found, c.missed, c.doubled);
 }
@@ -167,9 +174,9 @@ std::string evaluationTable(const Evaluation& evaluation) {
   std::string table = format("%-14s %6s %8s %8s %8s %8s  %17s  %17s %10s\n", "trajectory [m]", "poses", "ATE",
                              "median", "max", "evo", "RPE per 1 m", "RPE per 1 s", "coverage");
   for (const auto& t : evaluation.trajectories) table += trajectoryRow(t);
-  table += mapLines(evaluation.map) + calibrationLines(evaluation) + estimateLines(evaluation.estimates) +
-           wallLines(evaluation.walls) + report::roomLines(evaluation.rooms) +
-           report::floorLines(evaluation.floors, evaluation.by_storey) +
+  table += mapLines(evaluation.map) + calibrationLines(evaluation) + loopLine(evaluation.loops) +
+           estimateLines(evaluation.estimates) + wallLines(evaluation.walls) +
+           report::roomLines(evaluation.rooms) + report::floorLines(evaluation.floors, evaluation.by_storey) +
            report::doorwayLines(evaluation.doorways);
   return table;
 }
@@ -186,6 +193,9 @@ std::string evaluationJson(const Evaluation& evaluation) {
                           {"rotation", c.nees_rotation},
                           {"inside_95_translation", c.inside_translation},
                           {"inside_95_rotation", c.inside_rotation}};
+  const LoopResult& loops = evaluation.loops;
+  json["loops"] = {{"accepted", loops.accepted}, {"false", loops.wrong},      {"median_m", loops.median_m},
+                   {"max_m", loops.max_m},       {"returns", loops.revisits}, {"missed", loops.missed}};
   json["nees_of_estimates"] = estimatesJson(evaluation.estimates);
   json["walls"] = wallsJson(evaluation.walls);
   json["rooms"] = report::roomsJson(evaluation.rooms);

@@ -106,8 +106,11 @@ Evaluation evaluate(const std::string& out_dir, const Truth& truth) {
   const TrajectoryResult& first = evaluation.trajectories.front();
   if (!first.missing.empty()) throw Error("cannot judge '" + out_dir + "/trajectory.tum': " + first.missing);
   evaluation.map = judgeMap(out_dir, truth, first.absolute.T_truth_map);
-  if (std::filesystem::exists(out_dir + "/graph.json"))
-    evaluation.calibration = calibrationOf(readMeasuredLinks(out_dir + "/graph.json"), truth.poses);
+  if (std::filesystem::exists(out_dir + "/graph.json")) {
+    const std::vector<MeasuredLink> links = readMeasuredLinks(out_dir + "/graph.json");
+    evaluation.calibration = calibrationOf(links, truth.poses);
+    evaluation.loops = judgeLoops(links, truth.poses);
+  }
   if (evaluation.calibration.empty())
     evaluation.calibration_missing = "graph.json has no links with a covariance in the truth's time";
   judgeGraph(out_dir + "/graph.json", truth, first.absolute.T_truth_map, evaluation);

@@ -8,6 +8,7 @@
 #include "tools/eval/calibration.h"
 #include "tools/eval/doorway_error.h"
 #include "tools/eval/estimate_calibration.h"
+#include "tools/eval/loop_error.h"
 #include "tools/eval/floor_error.h"
 #include "tools/eval/map_error.h"
 #include "tools/eval/room_error.h"
@@ -44,6 +45,7 @@ struct Evaluation {
   MapResult map;
   std::map<std::string, Calibration> calibration;
   std::string calibration_missing;
+  LoopResult loops;
   WallResult walls;
   EstimateCalibration estimates;
   RoomResult rooms;

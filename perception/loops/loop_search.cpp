@@ -1,0 +1,194 @@
+#include "perception/loops/loop_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace sgraphs {
+namespace {
+
+constexpr double kQueryReach_m = 12.0;  // walls around the robot that are laid over the older ones
+constexpr size_t kMaxWalls = 300;
+constexpr float kUprightNormal = 0.3F;
+constexpr double kAnchorReach_m = 3.0;   // from a match to the old place that stands for it
+constexpr size_t kMaxSurroundings = 14;  // old places registered against, the nearest
+constexpr double kDistortion_m = 3.0;    // of path on which a cloud's surroundings bend
+constexpr double kSeenFrom_m = 4.0;      // from where an old place can tell what stands here
+constexpr double kApart_m = 0.5;         // poses that are two
+constexpr double kApart_rad = 0.175;
+
+double across(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).head<2>().norm();
+}
+
+// Upright patches from above, in the frame of the poses.
+std::vector<WallPoint> wallsOf(const std::vector<PlacedPlace>& places) {
+  std::vector<WallPoint> out;
+  for (const PlacedPlace& p : places) {
+    const Eigen::Matrix3f R = p.T_frame_body.matrix3().cast<float>();
+    const Eigen::Vector3f t = p.T_frame_body.translation.cast<float>();
+    for (const PackedPatch& patch : p.place->patches) {
+      const Eigen::Vector3f n = R * patch.normal();
+      if (std::abs(n.z()) > kUprightNormal) continue;
+      out.push_back({(R * patch.mean() + t).head<2>(), std::atan2(n.y(), n.x())});
+    }
+  }
+  return out;
+}
+
+// The newest places in the frame of the newest one's body.
+std::vector<PlacedPlace> queryOf(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path,
+                                 double path_m) {
+  std::vector<PlacedPlace> out;
+  const SE3 T_newest_odom = path.odometryOf(keyframe).inverse();
+  for (const Place* place : memory.newestBefore(keyframe, path_m, path))
+    out.push_back({place, T_newest_odom * path.odometryOf(place->id)});
+  return out;
+}
+
+// The query's walls about its body, turned as the map has it.
+std::vector<WallPoint> queryWalls(std::vector<PlacedPlace> query, const SE3& T_map_body) {
+  for (PlacedPlace& p : query) p.T_frame_body = SE3(T_map_body.rotation, {0, 0, 0}) * p.T_frame_body;
+  std::vector<WallPoint> near, out;
+  for (const WallPoint& w : wallsOf(query))
+    if (w.position.norm() < kQueryReach_m) near.push_back(w);
+  const size_t n = std::min(near.size(), kMaxWalls);
+  for (size_t i = 0; i < n; ++i) out.push_back(near[i * near.size() / n]);
+  return out;
+}
+
+bool apart(const SE3& a, const SE3& b) {
+  const SE3 d = a.inverse() * b;
+  return d.translation.norm() > kApart_m || so3Log(d.rotation).norm() > kApart_rad;
+}
+
+}  // namespace
+
+LoopSearch::Anchors LoopSearch::anchorsOf(KeyframeId keyframe, const PlaceMemory& memory,
+                                          const WalkedPath& path) const {
+  const MapKeyframe& here = memory.poseOf(keyframe);
+  const WalkedPath::Gates gates = path.gatesFrom(keyframe);
+  std::vector<Anchor> anchors;
+  for (const auto& [id, place] : memory.places()) {
+    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
+    if (!memory.known(id)) continue;
+    const MapKeyframe& there = memory.poseOf(id);
+    // Storeys look alike; only stairs lead from one to the other.
+    if (there.floor != here.floor) continue;
+    if (std::abs((there.T_map_body.translation - here.T_map_body.translation).z()) > config_.gate.height_m)
+      continue;
+    const LoopGate gate = gates.at(id);
+    if (across(there.T_map_body.translation, here.T_map_body.translation) > gate.radius_m + kAnchorReach_m)
+      continue;
+    anchors.push_back({id, there.T_map_body, gate});
+  }
+  return anchors;
+}
+
+OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, KeyframeId keyframe,
+                                           const PlaceMemory& memory, const WalkedPath& path) const {
+  const SE3 T_anchor_map = anchor.T_map_body.inverse();
+  const MapKeyframe& centre = memory.poseOf(anchor.id);
+  std::vector<PlacedPlace> places;
+  for (const auto& [id, place] : memory.places()) {
+    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
+    if (std::abs(path.walkedTo(id) - path.walkedTo(anchor.id)) > config_.verification.submap_path_m) continue;
+    if (!memory.known(id) || memory.poseOf(id).floor != centre.floor) continue;
+    const SE3 T_anchor_body = T_anchor_map * memory.poseOf(id).T_map_body;
+    if (T_anchor_body.translation.norm() > config_.verification.submap_radius_m) continue;
+    places.push_back({&place, T_anchor_body});
+  }
+  std::stable_sort(places.begin(), places.end(), [](const PlacedPlace& a, const PlacedPlace& b) {
+    return a.T_frame_body.translation.norm() < b.T_frame_body.translation.norm();
+  });
+  if (places.size() > kMaxSurroundings) places.resize(kMaxSurroundings);
+  return OldSurroundings(std::move(places));
+}
+
+const LoopSearch::Anchor* LoopSearch::nearest(const Anchors& anchors, const Eigen::Vector2d& position_map,
+                                              double within_m) {
+  const Anchor* best = nullptr;
+  for (const Anchor& a : anchors) {
+    const double d = (a.T_map_body.translation.head<2>() - position_map).norm();
+    if (d >= within_m) continue;
+    within_m = d;
+    best = &a;
+  }
+  return best;
+}
+
+LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const {
+  LoopVerdict verdict;
+  verdict.keyframe = keyframe;
+  const std::vector<Anchor> anchors = anchorsOf(keyframe, memory, path);
+  if (anchors.empty()) return verdict;
+  const SE3 T_map_body = memory.poseOf(keyframe).T_map_body;
+  LayoutSearch where;
+  where.centre_map = T_map_body.translation.head<2>();
+  where.max_matches = config_.verification.max_hypotheses;
+  where.yaw_range_rad = 0;
+  for (const Anchor& a : anchors) {
+    where.radius_m = std::max(where.radius_m, a.gate.radius_m);
+    where.yaw_range_rad = std::max(where.yaw_range_rad, a.gate.yaw_rad);
+  }
+  WallLayout layout(where.centre_map, where.radius_m + kQueryReach_m);
+  std::vector<PlacedPlace> old;
+  for (const auto& [id, place] : memory.places()) {
+    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
+    if (!memory.known(id) || memory.poseOf(id).floor != memory.poseOf(keyframe).floor) continue;
+    const SE3& T = memory.poseOf(id).T_map_body;
+    if (across(T.translation, T_map_body.translation) < where.radius_m + 2 * kQueryReach_m)
+      old.push_back({&place, T});
+  }
+  for (const WallPoint& w : wallsOf(old)) layout.add(w);
+
+  const std::vector<PlacedPlace> query = queryOf(keyframe, memory, path, config_.verification.query_path_m);
+  std::map<KeyframeId, OldSurroundings> surroundings;
+  for (const LayoutMatch& match : layout.search(queryWalls(query, T_map_body), where)) {
+    const Anchor* anchor = nearest(anchors, match.position_map, kAnchorReach_m);
+    if (!anchor || (match.position_map - where.centre_map).norm() > anchor->gate.radius_m ||
+        std::abs(match.yaw_rad) > anchor->gate.yaw_rad + 0.05)
+      continue;
+    auto it = surroundings.find(anchor->id);
+    if (it == surroundings.end())
+      it = surroundings.emplace(anchor->id, surroundingsOf(*anchor, keyframe, memory, path)).first;
+    // A body is carried at one height above the floor.
+    const SE3 T_map_guess(
+        so3Exp({0, 0, match.yaw_rad}) * T_map_body.rotation,
+        {match.position_map.x(), match.position_map.y(), anchor->T_map_body.translation.z()});
+    LoopHypothesis h;
+    h.check = checkLoop(query, it->second, anchor->T_map_body.inverse() * T_map_guess, config_.verification);
+    ++verdict.registrations;
+    h.loop = {anchor->id, keyframe, h.check.T_anchor_body,
+              h.check.covariance + path.distortionAt(anchor->id, kDistortion_m) +
+                  path.distortionAt(keyframe, kDistortion_m)};
+    const SE3 T_map_found = anchor->T_map_body * h.check.T_anchor_body;
+    h.correction_m = (T_map_found.translation - T_map_body.translation).norm();
+    h.gate_m = anchor->gate.radius_m;
+    verdict.hypotheses.push_back(h);
+  }
+  std::stable_sort(
+      verdict.hypotheses.begin(), verdict.hypotheses.end(),
+      [](const LoopHypothesis& a, const LoopHypothesis& b) { return a.check.quality() > b.check.quality(); });
+  std::vector<LoopHypothesis> kept;
+  for (const LoopHypothesis& h : verdict.hypotheses) {
+    const SE3 T_map_found = memory.poseOf(h.loop.from).T_map_body * h.loop.T_from_to;
+    if (std::all_of(kept.begin(), kept.end(), [&](const LoopHypothesis& k) {
+          return apart(memory.poseOf(k.loop.from).T_map_body * k.loop.T_from_to, T_map_found);
+        }))
+      kept.push_back(h);
+  }
+  verdict.hypotheses = std::move(kept);
+  if (!verdict.hypotheses.empty() && verdict.hypotheses.front().correction_m > kApart_m) {
+    if (const Anchor* anchor = nearest(anchors, where.centre_map, kSeenFrom_m)) {
+      const OldSurroundings around = surroundingsOf(*anchor, keyframe, memory, path);
+      const LoopCheck stays =
+          checkLoop(query, around, anchor->T_map_body.inverse() * T_map_body, config_.verification);
+      verdict.map_refuted = stays.refuted(config_.verification);
+      ++verdict.registrations;
+    }
+  }
+  return verdict;
+}
+
+}  // namespace sgraphs

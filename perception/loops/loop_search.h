@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "perception/loops/loop_consistency.h"
+#include "perception/loops/loop_verification.h"
+#include "perception/loops/wall_layout.h"
+
+namespace sgraphs {
+
+// One way in which a keyframe's surroundings can be a known place.
+struct LoopHypothesis {
+  MeasuredLoop loop;
+  LoopCheck check;
+  double correction_m = 0;  // how far it moves the keyframe from where the map has it
+  double gate_m = 0;        // how far it might
+};
+
+// Everything that a keyframe can be. One hypothesis: a return. Several: a place that looks like others.
+struct LoopVerdict {
+  KeyframeId keyframe;
+  std::vector<LoopHypothesis> hypotheses;  // distinct poses, best first
+  // The pose that the map has cannot be right: older places that it lies among contradict. Without that a
+  // return that corrects much is not believed: an office that is entered for the first time looks like the
+  // one next door.
+  bool map_refuted = false;
+  int registrations = 0;
+};
+
+// Looks for a remembered place of which this keyframe can be another look: the walls around are laid over the
+// older walls within the gate, and what fits is verified.
+class LoopSearch {
+ public:
+  explicit LoopSearch(const LoopsConfig& config) : config_(config) {}
+
+  LoopVerdict step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
+
+ private:
+  struct Anchor {
+    KeyframeId id;
+    SE3 T_map_body;
+    LoopGate gate;
+  };
+  using Anchors = std::vector<Anchor>;
+  static const Anchor* nearest(const Anchors& anchors, const Eigen::Vector2d& position_map, double within_m);
+  Anchors anchorsOf(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
+  OldSurroundings surroundingsOf(const Anchor& anchor, KeyframeId keyframe, const PlaceMemory& memory,
+                                 const WalkedPath& path) const;
+
+  LoopsConfig config_;
+};
+
+}  // namespace sgraphs
