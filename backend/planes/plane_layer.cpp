@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "backend/planes/plane_extent.h"
 #include "backend/planes/plane_pairs.h"
@@ -23,6 +24,9 @@ constexpr double kUprightWithin_rad = 0.07;
 constexpr double kAnnounceStep_m = 1e-3;
 constexpr double kAnnounceStep_rad = 1e-4;
 constexpr size_t kMaxUnmapped = 500;
+// An observation is of another plane than it was taken for if it is off by this (chi-square with 3 degrees of
+// freedom): ten times what walls depart from planes and what it is known to.
+constexpr double kMisfitChi2 = 100;
 // Covariances are first-order, about states that still move a little.
 constexpr double kCovarianceMargin = 1.02;
 
@@ -231,7 +235,7 @@ bool PlaneLayer::areTwins(PlaneId a, PlaneId b) const {
 void PlaneLayer::countTwins(bool idle) {
   const auto& planes = builder_.graph().planes;
   std::vector<PlaneId> looked_at = seen_;
-  if (idle) {
+  if (idle || rounds_to_look_at_all_ > 0) {
     looked_at.clear();
     for (const auto& [id, track] : tracks_) looked_at.push_back(id);
   }
@@ -313,6 +317,7 @@ void PlaneLayer::pairHeights(PlaneId id) {
 
 void PlaneLayer::settle(bool whole, bool idle) {
   countTwins(idle);
+  rounds_to_look_at_all_ = std::max(0, rounds_to_look_at_all_ - 1);
   mergeTwins();
   for (const PlaneId id : seen_) {
     pairFaces(id);
@@ -336,6 +341,63 @@ void PlaneLayer::remakeExtents() {
     all.insert(all.end(), seen.begin(), seen.end());
   }
   for (const auto& [id, extent] : points) builder_.setExtent(id, extent);
+}
+
+void PlaneLayer::mapMended(const std::map<KeyframeId, Matrix6d>& newest) {
+  const auto shorten = [&](Track& track) {
+    const auto way = newest.find(track.last_seen);
+    if (way != newest.end() && way->second.trace() < track.drift.trace()) track.drift = way->second;
+  };
+  for (auto& [id, track] : tracks_) shorten(track);
+  for (Unmapped& unmapped : unmapped_) shorten(unmapped.track);
+  reassociate();
+  remakeExtents();
+  rounds_to_look_at_all_ = kTwinEvidence;
+}
+
+bool PlaneLayer::fits(const ObservationFactor& factor) const {
+  const SituationalGraph& graph = builder_.graph();
+  AssociationGate gate = config_.gate;
+  gate.chi2 = kMisfitChi2;
+  const PlaneCandidate own{&graph.planes.at(factor.plane), Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
+  return planeDistance(factor.measurement, graph.keyframes.at(factor.keyframe).T_map_body, own, gate)
+      .has_value();
+}
+
+// The plane that the observation fits best, of those of its storey.
+PlaneId PlaneLayer::planeFor(const ObservationFactor& factor) const {
+  const SituationalGraph& graph = builder_.graph();
+  const KeyframeNode& node = graph.keyframes.at(factor.keyframe);
+  PlaneId best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [id, plane] : graph.planes) {
+    if (id == factor.plane || (plane.floor.valid() && node.floor.valid() && plane.floor != node.floor))
+      continue;
+    const PlaneCandidate candidate{&plane, Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
+    const auto distance2 = planeDistance(factor.measurement, node.T_map_body, candidate, config_.gate);
+    if (!distance2 || *distance2 >= least) continue;
+    least = *distance2;
+    best = id;
+  }
+  return best;
+}
+
+// Matched under a drift that the map has no more. A plane keeps what founded it: at least one observation.
+void PlaneLayer::reassociate() {
+  const SituationalGraph& graph = builder_.graph();
+  std::map<PlaneId, int64_t> left;
+  for (const auto& [id, plane] : graph.planes) left[id] = plane.num_observations;
+  std::set<int64_t> gone;
+  std::vector<std::pair<PlaneId, ObservationFactor>> moved;
+  for (const ObservationFactor& factor : graph.observations) {
+    if (fits(factor) || left.at(factor.plane) <= 1) continue;
+    left.at(factor.plane) -= 1;
+    gone.insert(factor.id);
+    if (const PlaneId plane = planeFor(factor); plane.valid()) moved.emplace_back(plane, factor);
+  }
+  builder_.removeObservations(gone);
+  for (const auto& [plane, factor] : moved)
+    builder_.addObservation(factor.keyframe, plane, factor.measurement);
 }
 
 void PlaneLayer::refreshCovariances() {
