@@ -104,11 +104,14 @@ class Backend::Impl {
   // Loops came, went, or were judged anew: solves the whole graph, until it and they agree.
   void mend(LoopLayer::Change change) {
     for (int i = 0; change != LoopLayer::Change::kNone && i < kMaxJudgements; ++i) {
-      const bool large = change != LoopLayer::Change::kSmall;
-      if (large)
-        builder_.moveKeyframes(change == LoopLayer::Change::kLarge ? bentToLoops(graph())
-                                                                   : poseGraphOptimum(graph()));
-      large ? builder_.solveFromAfar() : builder_.solve(true);
+      if (change == LoopLayer::Change::kSmall) {
+        builder_.solve(true);
+      } else {
+        const bool unbend = change == LoopLayer::Change::kUndone;
+        builder_.moveKeyframes(unbend ? poseGraphOptimum(graph()) : bentToLoops(graph()));
+        if (unbend) planes_.mapUnbent();
+        builder_.solveFromAfar();
+      }
       change = loops_.judge();
     }
     const KeyframeId newest = graph().keyframes.rbegin()->first;

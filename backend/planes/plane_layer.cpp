@@ -27,6 +27,8 @@ constexpr size_t kMaxUnmapped = 500;
 // An observation is of another plane than it was taken for if it is off by this (chi-square with 3 degrees of
 // freedom): ten times what walls depart from planes and what it is known to.
 constexpr double kMisfitChi2 = 100;
+// What keyframes that follow each other err by where no wall has been solved for yet.
+constexpr double kRoughly_m = 0.1, kRoughly_rad = 0.05;
 // Covariances are first-order, about states that still move a little.
 constexpr double kCovarianceMargin = 1.02;
 
@@ -350,22 +352,29 @@ void PlaneLayer::mapMended(const std::map<KeyframeId, Matrix6d>& newest) {
   };
   for (auto& [id, track] : tracks_) shorten(track);
   for (Unmapped& unmapped : unmapped_) shorten(unmapped.track);
-  reassociate();
+  AssociationGate own = config_.gate;
+  own.chi2 = kMisfitChi2;
+  reassociate(own, config_.gate);
   remakeExtents();
   rounds_to_look_at_all_ = kTwinEvidence;
 }
 
-bool PlaneLayer::fits(const ObservationFactor& factor) const {
-  const SituationalGraph& graph = builder_.graph();
-  AssociationGate gate = config_.gate;
-  gate.chi2 = kMisfitChi2;
-  const PlaneCandidate own{&graph.planes.at(factor.plane), Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
-  return planeDistance(factor.measurement, graph.keyframes.at(factor.keyframe).T_map_body, own, gate)
-      .has_value();
+void PlaneLayer::mapUnbent() {
+  AssociationGate rough = config_.gate;
+  rough.surface_m = kRoughly_m;
+  rough.surface_rad = kRoughly_rad;
+  reassociate(rough, rough);
+}
+
+bool PlaneLayer::fits(const ObservationFactor& factor, const PlaneNode& plane,
+                      const AssociationGate& gate) const {
+  const PlaneCandidate candidate{&plane, Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
+  const SE3& T_map_body = builder_.graph().keyframes.at(factor.keyframe).T_map_body;
+  return planeDistance(factor.measurement, T_map_body, candidate, gate).has_value();
 }
 
 // The plane that the observation fits best, of those of its storey.
-PlaneId PlaneLayer::planeFor(const ObservationFactor& factor) const {
+PlaneId PlaneLayer::planeFor(const ObservationFactor& factor, const AssociationGate& gate) const {
   const SituationalGraph& graph = builder_.graph();
   const KeyframeNode& node = graph.keyframes.at(factor.keyframe);
   PlaneId best;
@@ -374,7 +383,7 @@ PlaneId PlaneLayer::planeFor(const ObservationFactor& factor) const {
     if (id == factor.plane || (plane.floor.valid() && node.floor.valid() && plane.floor != node.floor))
       continue;
     const PlaneCandidate candidate{&plane, Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
-    const auto distance2 = planeDistance(factor.measurement, node.T_map_body, candidate, config_.gate);
+    const auto distance2 = planeDistance(factor.measurement, node.T_map_body, candidate, gate);
     if (!distance2 || *distance2 >= least) continue;
     least = *distance2;
     best = id;
@@ -382,22 +391,64 @@ PlaneId PlaneLayer::planeFor(const ObservationFactor& factor) const {
   return best;
 }
 
-// Matched under a drift that the map has no more. A plane keeps what founded it: at least one observation.
-void PlaneLayer::reassociate() {
+// A plane keeps what founded it: at least one observation.
+void PlaneLayer::reassociate(const AssociationGate& own, const AssociationGate& other) {
   const SituationalGraph& graph = builder_.graph();
   std::map<PlaneId, int64_t> left;
   for (const auto& [id, plane] : graph.planes) left[id] = plane.num_observations;
   std::set<int64_t> gone;
   std::vector<std::pair<PlaneId, ObservationFactor>> moved;
+  std::vector<ObservationFactor> astray;
   for (const ObservationFactor& factor : graph.observations) {
-    if (fits(factor) || left.at(factor.plane) <= 1) continue;
+    if (left.at(factor.plane) <= 1 || fits(factor, graph.planes.at(factor.plane), own)) continue;
     left.at(factor.plane) -= 1;
     gone.insert(factor.id);
-    if (const PlaneId plane = planeFor(factor); plane.valid()) moved.emplace_back(plane, factor);
+    if (const PlaneId plane = planeFor(factor, other); plane.valid())
+      moved.emplace_back(plane, factor);
+    else
+      astray.push_back(factor);
   }
   builder_.removeObservations(gone);
   for (const auto& [plane, factor] : moved)
     builder_.addObservation(factor.keyframe, plane, factor.measurement);
+  mapApart(astray, other);
+}
+
+// Planes of their own, for those that are seen twice.
+void PlaneLayer::mapApart(const std::vector<ObservationFactor>& astray, const AssociationGate& gate) {
+  struct Found {
+    PlaneNode plane;
+    std::vector<const ObservationFactor*> seen;
+  };
+  const auto& keyframes = builder_.graph().keyframes;
+  std::vector<Found> found;
+  for (const ObservationFactor& factor : astray) {
+    const KeyframeNode& node = keyframes.at(factor.keyframe);
+    const auto known = std::find_if(found.begin(), found.end(), [&](const Found& f) {
+      return f.plane.floor == node.floor && fits(factor, f.plane, gate);
+    });
+    if (known == found.end()) {
+      found.push_back({planeFrom(factor.measurement, node.T_map_body, node.floor), {&factor}});
+      continue;
+    }
+    Polygon2d extent = extentOf(known->plane);
+    const Polygon2d more = extentOn(known->plane, factor.measurement, node.T_map_body);
+    extent.insert(extent.end(), more.begin(), more.end());
+    setExtent(known->plane, std::move(extent));
+    known->seen.push_back(&factor);
+  }
+  for (const Found& f : found) {
+    if (f.seen.size() < 2) continue;
+    const ObservationFactor& newest = *f.seen.back();
+    map({f.seen.front()->keyframe, f.seen.front()->measurement, f.plane, {}});
+    const PlaneNode& plane = builder_.graph().planes.rbegin()->second;
+    builder_.setExtent(plane.id, extentOf(f.plane));
+    for (size_t i = 1; i < f.seen.size(); ++i)
+      builder_.addObservation(f.seen[i]->keyframe, plane.id, f.seen[i]->measurement);
+    // How old it is, mapMended() says.
+    tracks_[plane.id] = {atAnchor(newest.measurement, keyframes.at(newest.keyframe).T_map_body, plane),
+                         plane.normal_map, keyframes.rbegin()->second.covariance, newest.keyframe};
+  }
 }
 
 void PlaneLayer::refreshCovariances() {
