@@ -233,7 +233,7 @@ class Backend::Impl {
   FloorLayer floors_;
   RoomChanges room_changes_;
   bool relevelled_ = false;
-  bool mended_ = false;  // in this round
+  bool mended_ = false;                                      // in this round
   std::map<KeyframeId, std::pair<SE3, FloorId>> announced_;  // T_map_body as it was last made known, storey
 };
 

@@ -29,7 +29,8 @@ class GraphBuilder {
   // A relative pose that closes a circle; its effect is not local.
   static bool closesCircle(const RelativePose& z);
   int64_t addRelativePose(const RelativePose& z);
-  // A loop by its id: known from now on, at first without a part in the graph; switched on and off; forgotten.
+  // A loop by its id: known from now on, at first without a part in the graph; switched on and off;
+  // forgotten.
   void addLoop(LoopId id, const RelativePose& z) { graph_.loops[id] = {z, -1}; }
   void switchLoop(LoopId id, bool on);
   void removeLoop(LoopId id);

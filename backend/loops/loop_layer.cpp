@@ -69,7 +69,8 @@ LoopLayer::Change LoopLayer::apply(const LoopClosures& loops, std::vector<std::s
       change = std::max(change, switchOn(loop.id));
     else
       refused.push_back("loop " + loop.id.str() + " from " + loop.pose.from.str() + " to " +
-                        loop.pose.to.str() + ": odometry contradicts it; it has no part until the map agrees");
+                        loop.pose.to.str() +
+                        ": odometry contradicts it; it has no part until the map agrees");
   }
   for (const LoopId id : loops.withdrawn) {
     const auto known = builder_.graph().loops.find(id);

@@ -29,8 +29,7 @@ std::map<KeyframeId, SE3> solved(const SituationalGraph& graph, bool keep_shape)
     const RelativePose& z = f.measurement;
     SE3 T = z.T_from_to;
     if (keep_shape && z.kind != RelativePoseKind::kLoop) {
-      const SE3 now =
-          graph.keyframes.at(z.from).T_map_body.inverse() * graph.keyframes.at(z.to).T_map_body;
+      const SE3 now = graph.keyframes.at(z.from).T_map_body.inverse() * graph.keyframes.at(z.to).T_map_body;
       const Vector6d off = se3Log(T.inverse() * now);
       if (off.dot(z.covariance.ldlt().solve(off)) < kPresentShapeChi2) T = now;
     }
@@ -86,8 +85,8 @@ std::map<KeyframeId, Matrix6d> covariancesAlongBestWay(const SituationalGraph& g
       const bool forth = step.z->from == here;
       const SE3 T = forth ? step.z->T_from_to : step.z->T_from_to.inverse();
       const Matrix6d Adz = forth ? Matrix6d(Matrix6d::Identity()) : se3Adjoint(step.z->T_from_to);
-      const Reached next{at.T_of_here * T, composeCovariance(at.covariance, T,
-                                                             Adz * step.z->covariance * Adz.transpose())};
+      const Reached next{at.T_of_here * T,
+                         composeCovariance(at.covariance, T, Adz * step.z->covariance * Adz.transpose())};
       const auto known = reached.find(step.to);
       if (known != reached.end()) {
         if (known->second.covariance.trace() <= next.covariance.trace()) continue;

@@ -43,8 +43,8 @@ class PlaneLayer {
   // Proof from elsewhere (a room) that the two are one: `into` lives on.
   void merge(PlaneId from, PlaneId into);
 
-  // The map was bent by a loop that is none, and lies again as odometry has it, roughly: what was taken for one
-  // plane on the word of that loop comes apart.
+  // The map was bent by a loop that is none, and lies again as odometry has it, roughly: what was taken for
+  // one plane on the word of that loop comes apart.
   void mapUnbent();
 
   // Loops have moved the map. Observations that do not fit their plane any more go to the one they do fit, or

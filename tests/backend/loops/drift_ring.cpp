@@ -37,7 +37,8 @@ SE3 poseAt(double s, double side_m) {
   s = std::fmod(s + side_m / 2, 4 * side_m);
   const int k = static_cast<int>(s / side_m);
   const Eigen::Quaterniond q = so3Exp({0, 0, k * M_PI / 2});
-  return {q * so3Exp({0, 0, M_PI / 2}), q * Eigen::Vector3d(side_m / 2, s - k * side_m - side_m / 2, kBody_m)};
+  return {q * so3Exp({0, 0, M_PI / 2}),
+          q * Eigen::Vector3d(side_m / 2, s - k * side_m - side_m / 2, kBody_m)};
 }
 
 bool visiblePart(const Face& face, const SE3& T_world_body, Face& part) {
