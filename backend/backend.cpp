@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "backend/graph_builder.h"
 #include "backend/keyframe_admission.h"
 #include "backend/levelling.h"
+#include "backend/loops/loop_layer.h"
+#include "backend/loops/pose_graph.h"
 #include "backend/planes/plane_layer.h"
 #include "backend/planes/shared_information.h"
 #include "backend/rooms/floor_layer.h"
@@ -20,6 +23,8 @@ constexpr int64_t kRelevelRound = 3;
 // Keyframes are announced again when they moved by more than this.
 constexpr double kAnnounceStep_m = 1e-3;
 constexpr double kAnnounceStep_rad = 1e-4;
+// Loops that are switched off or on in one round at most; each costs a solve of the whole graph.
+constexpr int kMaxJudgements = 5;
 // The covariance is propagated to first order about states that still move a little.
 constexpr double kCovarianceMargin = 1.02;
 
@@ -66,6 +71,7 @@ class Backend::Impl {
   explicit Impl(const BackendConfig& config)
       : builder_(solverOptions(config)),
         planes_(config.planes, builder_),
+        loops_(config.loops, builder_),
         rooms_(config.rooms, builder_, planes_),
         floors_(config.floors, config.rooms.wall_sigma_m, config.rooms.along_sigma_m, builder_) {}
 
@@ -73,6 +79,11 @@ class Backend::Impl {
     RoundOutput output;
     if (input.round >= kRelevelRound) relevelOnce();
     const bool idle = !input.keyframe;
+    // First: what is new is then compared with the map as it is with them.
+    if (input.loops && !graph().keyframes.empty()) {
+      const LoopLayer::Change change = loops_.apply(*input.loops, output.refused);
+      if (change != LoopLayer::Change::kNone) mend(change);
+    }
     const std::optional<Rooms> rooms = std::move(input.rooms);
     if (input.free_space) builder_.setFreeSpace(std::move(input.free_space));
     bool whole = !idle && add(std::move(input), output);
@@ -90,10 +101,28 @@ class Backend::Impl {
   std::map<KeyframeId, Matrix6d> keyframeCovariances() const { return builder_.keyframeCovariances(); }
 
  private:
+  // Loops came, went, or were judged anew: solves the whole graph, until it and they agree.
+  void mend(LoopLayer::Change change) {
+    for (int i = 0; change != LoopLayer::Change::kNone && i < kMaxJudgements; ++i) {
+      if (change == LoopLayer::Change::kSmall) {
+        builder_.solve(true);
+      } else {
+        const bool unbend = change == LoopLayer::Change::kUndone;
+        builder_.moveKeyframes(unbend ? poseGraphOptimum(graph()) : bentToLoops(graph()));
+        if (unbend) planes_.mapUnbent();
+        builder_.solveFromAfar();
+      }
+      change = loops_.judge();
+    }
+    const KeyframeId newest = graph().keyframes.rbegin()->first;
+    planes_.mapMended(covariancesAlongBestWay(graph(), newest));
+    mended_ = true;
+  }
+
   // True if the round needs the whole graph.
   bool add(RoundInput input, RoundOutput& output) {
     Admission admission = admit(*input.keyframe, graph());
-    output.refused = std::move(admission.refused);
+    output.refused.insert(output.refused.end(), admission.refused.begin(), admission.refused.end());
     output.bridged = admission.bridged;
     if (!admission.accepted) return false;
     const KeyframeId id = input.keyframe->id;
@@ -155,6 +184,7 @@ class Backend::Impl {
     node.keyframe = std::make_shared<const Keyframe>(std::move(keyframe));
     builder_.addKeyframe(std::move(node));
     planes_.advance(z);
+    loops_.advance(z);
   }
 
   void relevelOnce() {
@@ -165,8 +195,10 @@ class Backend::Impl {
 
   void solve(bool whole, bool idle, RoundOutput& output) {
     const IncrementalSolver::Report report = builder_.solve(whole);
-    output.whole_graph = report.whole;
+    output.whole_graph = report.whole || std::exchange(mended_, false);
     if (graph().keyframes.empty()) return;
+    if (report.whole && report.converged)
+      if (const LoopLayer::Change change = loops_.judge(); change != LoopLayer::Change::kNone) mend(change);
     planes_.settle(report.whole, idle);
     const KeyframeId newest = graph().keyframes.rbegin()->first;
     // A factorisation costs as much as a solve, and only ever lowers them.
@@ -196,10 +228,12 @@ class Backend::Impl {
 
   GraphBuilder builder_;
   PlaneLayer planes_;
+  LoopLayer loops_;
   RoomLayer rooms_;
   FloorLayer floors_;
   RoomChanges room_changes_;
   bool relevelled_ = false;
+  bool mended_ = false;                                      // in this round
   std::map<KeyframeId, std::pair<SE3, FloorId>> announced_;  // T_map_body as it was last made known, storey
 };
 

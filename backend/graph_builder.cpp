@@ -17,6 +17,9 @@
 namespace sgraphs {
 namespace {
 
+// Observations of planes count as quadratic up to these multiples of their robust scale, one after the other,
+// where a solve starts from afar.
+constexpr double kFromAfar[] = {100, 30, 10, 3};
 // A neighbour factor over more keyframes than this closes a circle: its effect is not local.
 constexpr int64_t kLocalSpan = 10;
 // Robust factors are quadratic up to the 99 % quantile of chi-square (16.8, 11.3, 9.2, 6.6 with 6, 3, 2, 1
@@ -35,6 +38,13 @@ PlaneState stateOf(const PlaneNode& plane) {
 void turnNormal(PlaneNode& plane, const Eigen::Vector3d& normal_map) {
   plane.covariance = reframedCovariance(plane.covariance, plane.normal_map, normal_map);
   plane.normal_map = normal_map;
+}
+
+void movePlane(PlaneNode& plane, const SE3& T_new_old) {
+  turnNormal(plane, T_new_old.rotation * plane.normal_map);
+  plane.anchor_map = T_new_old * plane.anchor_map;
+  plane.centroid_map = T_new_old * plane.centroid_map;
+  for (Eigen::Vector3d& corner : plane.polygon_map) corner = T_new_old * corner;
 }
 
 }  // namespace
@@ -74,12 +84,30 @@ bool GraphBuilder::closesCircle(const RelativePose& z) {
   return z.kind == RelativePoseKind::kLoop || std::abs(z.from.value - z.to.value) > kLocalSpan;
 }
 
-void GraphBuilder::addRelativePose(const RelativePose& z) {
+int64_t GraphBuilder::addRelativePose(const RelativePose& z) {
   const bool loop = z.kind == RelativePoseKind::kLoop;
   const int64_t id = add(kindOf(z), RelativePoseCost::Create(z.T_from_to, z.covariance),
                          {keyframe_states_.at(z.from), keyframe_states_.at(z.to)},
                          loop ? std::optional<double>(kCauchy6) : std::nullopt);
   graph_.relative_poses.push_back({id, z});
+  return id;
+}
+
+void GraphBuilder::switchLoop(LoopId id, bool on) {
+  KnownLoop& loop = graph_.loops.at(id);
+  if (loop.active() == on) return;
+  if (on) {
+    loop.factor = addRelativePose(loop.measurement);
+    return;
+  }
+  drop(loop.factor);
+  std::erase_if(graph_.relative_poses, [&](const RelativePoseFactor& f) { return f.id == loop.factor; });
+  loop.factor = -1;
+}
+
+void GraphBuilder::removeLoop(LoopId id) {
+  switchLoop(id, false);
+  graph_.loops.erase(id);
 }
 
 GraphBuilder::StateId GraphBuilder::upState() {
@@ -99,6 +127,16 @@ void GraphBuilder::addObservation(KeyframeId keyframe, PlaneId plane, const Plan
                          {keyframe_states_.at(keyframe), plane_states_.at(plane)}, kCauchy3);
   graph_.observations.push_back({id, keyframe, plane, z});
   graph_.planes.at(plane).num_observations += 1;
+}
+
+void GraphBuilder::removeObservations(const std::set<int64_t>& ids) {
+  std::erase_if(graph_.observations, [&](const ObservationFactor& f) {
+    if (!ids.contains(f.id)) return false;
+    drop(f.id);
+    graph_.planes.at(f.plane).num_observations -= 1;
+    return true;
+  });
+  std::erase_if(trusted_, [&](int64_t id) { return ids.contains(id); });
 }
 
 void GraphBuilder::addPlaneUp(PlaneId plane, bool level, double sigma_rad) {
@@ -195,14 +233,46 @@ void GraphBuilder::relevel() {
     solver_.setPose(keyframe_states_.at(id), node.T_map_body);
   }
   for (auto& [id, plane] : graph_.planes) {
-    turnNormal(plane, T_new_old.rotation * plane.normal_map);
-    plane.anchor_map = T_new_old * plane.anchor_map;
-    plane.centroid_map = T_new_old * plane.centroid_map;
-    for (Eigen::Vector3d& corner : plane.polygon_map) corner = T_new_old * corner;
+    movePlane(plane, T_new_old);
     solver_.setPlane(plane_states_.at(id), stateOf(plane));
   }
   graph_.up_map = Eigen::Vector3d::UnitZ();
   solver_.setUnitVector(up_state_, graph_.up_map);
+}
+
+void GraphBuilder::moveKeyframes(const std::map<KeyframeId, SE3>& T_map_body) {
+  std::map<PlaneId, KeyframeId> first;
+  for (const ObservationFactor& f : graph_.observations) {
+    const auto [known, fresh] = first.try_emplace(f.plane, f.keyframe);
+    if (!fresh) known->second = std::min(known->second, f.keyframe);
+  }
+  for (const auto& [id, keyframe] : first) {
+    const auto now = T_map_body.find(keyframe);
+    if (now == T_map_body.end()) continue;
+    PlaneNode& plane = graph_.planes.at(id);
+    movePlane(plane, now->second * graph_.keyframes.at(keyframe).T_map_body.inverse());
+    solver_.setPlane(plane_states_.at(id), stateOf(plane));
+  }
+  for (auto& [id, node] : graph_.keyframes) {
+    const auto now = T_map_body.find(id);
+    if (now == T_map_body.end() || id == graph_.keyframes.begin()->first) continue;
+    node.T_map_body = now->second;
+    solver_.setPose(keyframe_states_.at(id), node.T_map_body);
+  }
+}
+
+IncrementalSolver::Report GraphBuilder::solveFromAfar() {
+  const auto scale = [&](double multiple) {
+    for (const ObservationFactor& f : graph_.observations)
+      solver_.setCauchyScale(factors_.at(f.id).factor, multiple * kCauchy3);
+  };
+  for (const double multiple : kFromAfar) {
+    scale(multiple);
+    takeOver(solver_.solve(true).free);
+  }
+  scale(1.0);
+  trusted_.clear();
+  return solve(true);
 }
 
 IncrementalSolver::Report GraphBuilder::solve(bool whole) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,16 @@ class GraphBuilder {
 
   // A relative pose that closes a circle; its effect is not local.
   static bool closesCircle(const RelativePose& z);
-  void addRelativePose(const RelativePose& z);
+  int64_t addRelativePose(const RelativePose& z);
+  // A loop by its id: known from now on, at first without a part in the graph; switched on and off;
+  // forgotten.
+  void addLoop(LoopId id, const RelativePose& z) { graph_.loops[id] = {z, -1}; }
+  void switchLoop(LoopId id, bool on);
+  void removeLoop(LoopId id);
   void addUp(KeyframeId keyframe, const Eigen::Vector3d& up_body, double sigma_rad);
   void addObservation(KeyframeId keyframe, PlaneId plane, const PlaneObservation& z);
+  // Takes observations back, by the ids of their factors; what is known of their planes else stays.
+  void removeObservations(const std::set<int64_t>& ids);
   // A plumb wall alone does not say where up is: it needs an up that is measured, or a level plane before it.
   bool hasUp() const { return up_state_ >= 0; }
   void addPlaneUp(PlaneId plane, bool level, double sigma_rad);
@@ -70,7 +78,14 @@ class GraphBuilder {
   // Residuals do not change: the whole map turns. Nothing without an up factor.
   void relevel();
 
+  // Keyframes are put elsewhere, and each plane goes with the keyframe that saw it first. The first keyframe
+  // stays. A start for solveFromAfar().
+  void moveKeyframes(const std::map<KeyframeId, SE3>& T_map_body);
+
   IncrementalSolver::Report solve(bool whole);
+  // The whole graph where its states may be decimetres off: what was seen of planes is not taken for an
+  // outlier at first, and then by ever stricter measure.
+  IncrementalSolver::Report solveFromAfar();
 
   void setExtent(PlaneId plane, const std::vector<Eigen::Vector2d>& points);
   void setCovariance(KeyframeId keyframe, const Matrix6d& covariance) {

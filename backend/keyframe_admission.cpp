@@ -54,8 +54,7 @@ std::string faultOfRelativePose(const RelativePose& z, const Keyframe& keyframe,
     return "is of an unknown kind";
   if (!known(z.from)) return "names " + z.from.str() + ", which is not in the graph";
   if (!known(z.to)) return "names " + z.to.str() + ", which is not in the graph";
-  if (!isRigid(z.T_from_to)) return "T_from_to is not a finite rigid transform";
-  return faultOfCovariance(z.covariance);
+  return faultOfMeasurement(z);
 }
 
 bool sameMeasurement(const RelativePose& a, const RelativePose& b) {
@@ -87,6 +86,11 @@ void admitUp(const Keyframe& keyframe, Admission& admission) {
 }
 
 }  // namespace
+
+std::string faultOfMeasurement(const RelativePose& z) {
+  if (!isRigid(z.T_from_to)) return "T_from_to is not a finite rigid transform";
+  return faultOfCovariance(z.covariance);
+}
 
 Matrix6d bridgeCovariance(const SE3& T_from_to) {
   const double sigma_m = 0.05 + 0.1 * T_from_to.translation.norm();

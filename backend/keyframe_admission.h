@@ -7,6 +7,9 @@
 
 namespace sgraphs {
 
+// Why the measurement cannot be solved with, whatever it is of; empty if it can.
+std::string faultOfMeasurement(const RelativePose& z);
+
 // What of an arriving keyframe may enter the graph.
 struct Admission {
   bool accepted = false;                     // the keyframe itself

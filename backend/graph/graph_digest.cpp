@@ -155,6 +155,19 @@ void addRoomFactors(const SituationalGraph& graph, CanonicalBytes& bytes) {
   }
 }
 
+// Those switched off, too: they may come back.
+void addLoops(const SituationalGraph& graph, CanonicalBytes& bytes) {
+  bytes.add(static_cast<int64_t>(graph.loops.size()));
+  for (const auto& [id, loop] : graph.loops) {
+    bytes.add(id.value);
+    bytes.add(loop.factor);
+    bytes.add(loop.measurement.from.value);
+    bytes.add(loop.measurement.to.value);
+    bytes.add(loop.measurement.T_from_to);
+    addCovariance(loop.measurement.covariance, bytes);
+  }
+}
+
 void addFactors(const SituationalGraph& graph, CanonicalBytes& bytes) {
   // Kinds in the order of their enumeration, within a kind in the order of their ids (they are monotonic).
   for (const RelativePoseKind kind :
@@ -213,6 +226,7 @@ std::string SituationalGraph::digest() const {
   addRooms(*this, bytes);
   bytes.add(up_map);
   bytes.add(static_cast<int64_t>(relative_poses.size()));
+  addLoops(*this, bytes);
   addFactors(*this, bytes);
   addRoomFactors(*this, bytes);
   return bytes.hex();

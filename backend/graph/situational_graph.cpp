@@ -1,5 +1,6 @@
 #include "backend/graph/situational_graph.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -120,6 +121,11 @@ void SituationalGraph::check() const {
     checkKeyframe(factor.measurement.to, factor.id);
     if (!factor.measurement.T_from_to.isFinite() || !factor.measurement.covariance.allFinite())
       broken("factor " + std::to_string(factor.id) + " is not finite");
+  }
+  for (const auto& [id, loop] : loops) {
+    const auto isOf = [&](const RelativePoseFactor& f) { return f.id == loop.factor; };
+    if (loop.active() && std::none_of(relative_poses.begin(), relative_poses.end(), isOf))
+      broken("loop " + id.str() + " is active without a factor");
   }
   for (const UpFactor& factor : ups) {
     checkKeyframe(factor.keyframe, factor.id);

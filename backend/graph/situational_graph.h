@@ -72,6 +72,14 @@ struct RelativePoseFactor {
   RelativePose measurement;
 };
 
+// A loop that was accepted and not withdrawn.
+struct KnownLoop {
+  RelativePose measurement;
+  int64_t factor = -1;  // -1: switched off, as long as the rest of the graph contradicts it
+
+  bool active() const { return factor >= 0; }
+};
+
 struct UpFactor {
   int64_t id = 0;
   KeyframeId keyframe;
@@ -174,7 +182,9 @@ struct SituationalGraph {
   std::shared_ptr<const FreeSpace> free_space;        // as last observed; null: none yet
   Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  // state on the unit sphere
 
-  std::vector<RelativePoseFactor> relative_poses;
+  std::map<LoopId, KnownLoop> loops;
+
+  std::vector<RelativePoseFactor> relative_poses;  // of loops the active ones
   std::vector<UpFactor> ups;
   std::vector<ObservationFactor> observations;
   std::vector<PlaneUpFactor> plane_ups;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "backend/planes/plane_extent.h"
 #include "backend/planes/plane_pairs.h"
@@ -23,6 +24,11 @@ constexpr double kUprightWithin_rad = 0.07;
 constexpr double kAnnounceStep_m = 1e-3;
 constexpr double kAnnounceStep_rad = 1e-4;
 constexpr size_t kMaxUnmapped = 500;
+// An observation is of another plane than it was taken for if it is off by this (chi-square with 3 degrees of
+// freedom): ten times what walls depart from planes and what it is known to.
+constexpr double kMisfitChi2 = 100;
+// What keyframes that follow each other err by where no wall has been solved for yet.
+constexpr double kRoughly_m = 0.1, kRoughly_rad = 0.05;
 // Covariances are first-order, about states that still move a little.
 constexpr double kCovarianceMargin = 1.02;
 
@@ -231,7 +237,7 @@ bool PlaneLayer::areTwins(PlaneId a, PlaneId b) const {
 void PlaneLayer::countTwins(bool idle) {
   const auto& planes = builder_.graph().planes;
   std::vector<PlaneId> looked_at = seen_;
-  if (idle) {
+  if (idle || rounds_to_look_at_all_ > 0) {
     looked_at.clear();
     for (const auto& [id, track] : tracks_) looked_at.push_back(id);
   }
@@ -313,6 +319,7 @@ void PlaneLayer::pairHeights(PlaneId id) {
 
 void PlaneLayer::settle(bool whole, bool idle) {
   countTwins(idle);
+  rounds_to_look_at_all_ = std::max(0, rounds_to_look_at_all_ - 1);
   mergeTwins();
   for (const PlaneId id : seen_) {
     pairFaces(id);
@@ -336,6 +343,112 @@ void PlaneLayer::remakeExtents() {
     all.insert(all.end(), seen.begin(), seen.end());
   }
   for (const auto& [id, extent] : points) builder_.setExtent(id, extent);
+}
+
+void PlaneLayer::mapMended(const std::map<KeyframeId, Matrix6d>& newest) {
+  const auto shorten = [&](Track& track) {
+    const auto way = newest.find(track.last_seen);
+    if (way != newest.end() && way->second.trace() < track.drift.trace()) track.drift = way->second;
+  };
+  for (auto& [id, track] : tracks_) shorten(track);
+  for (Unmapped& unmapped : unmapped_) shorten(unmapped.track);
+  AssociationGate own = config_.gate;
+  own.chi2 = kMisfitChi2;
+  reassociate(own, config_.gate);
+  remakeExtents();
+  rounds_to_look_at_all_ = kTwinEvidence;
+}
+
+void PlaneLayer::mapUnbent() {
+  AssociationGate rough = config_.gate;
+  rough.surface_m = kRoughly_m;
+  rough.surface_rad = kRoughly_rad;
+  reassociate(rough, rough);
+}
+
+bool PlaneLayer::fits(const ObservationFactor& factor, const PlaneNode& plane,
+                      const AssociationGate& gate) const {
+  const PlaneCandidate candidate{&plane, Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
+  const SE3& T_map_body = builder_.graph().keyframes.at(factor.keyframe).T_map_body;
+  return planeDistance(factor.measurement, T_map_body, candidate, gate).has_value();
+}
+
+// The plane that the observation fits best, of those of its storey.
+PlaneId PlaneLayer::planeFor(const ObservationFactor& factor, const AssociationGate& gate) const {
+  const SituationalGraph& graph = builder_.graph();
+  const KeyframeNode& node = graph.keyframes.at(factor.keyframe);
+  PlaneId best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [id, plane] : graph.planes) {
+    if (id == factor.plane || (plane.floor.valid() && node.floor.valid() && plane.floor != node.floor))
+      continue;
+    const PlaneCandidate candidate{&plane, Eigen::Matrix3d::Zero(), Matrix6d::Zero()};
+    const auto distance2 = planeDistance(factor.measurement, node.T_map_body, candidate, gate);
+    if (!distance2 || *distance2 >= least) continue;
+    least = *distance2;
+    best = id;
+  }
+  return best;
+}
+
+// A plane keeps what founded it: at least one observation.
+void PlaneLayer::reassociate(const AssociationGate& own, const AssociationGate& other) {
+  const SituationalGraph& graph = builder_.graph();
+  std::map<PlaneId, int64_t> left;
+  for (const auto& [id, plane] : graph.planes) left[id] = plane.num_observations;
+  std::set<int64_t> gone;
+  std::vector<std::pair<PlaneId, ObservationFactor>> moved;
+  std::vector<ObservationFactor> astray;
+  for (const ObservationFactor& factor : graph.observations) {
+    if (left.at(factor.plane) <= 1 || fits(factor, graph.planes.at(factor.plane), own)) continue;
+    left.at(factor.plane) -= 1;
+    gone.insert(factor.id);
+    if (const PlaneId plane = planeFor(factor, other); plane.valid())
+      moved.emplace_back(plane, factor);
+    else
+      astray.push_back(factor);
+  }
+  builder_.removeObservations(gone);
+  for (const auto& [plane, factor] : moved)
+    builder_.addObservation(factor.keyframe, plane, factor.measurement);
+  mapApart(astray, other);
+}
+
+// Planes of their own, for those that are seen twice.
+void PlaneLayer::mapApart(const std::vector<ObservationFactor>& astray, const AssociationGate& gate) {
+  struct Found {
+    PlaneNode plane;
+    std::vector<const ObservationFactor*> seen;
+  };
+  const auto& keyframes = builder_.graph().keyframes;
+  std::vector<Found> found;
+  for (const ObservationFactor& factor : astray) {
+    const KeyframeNode& node = keyframes.at(factor.keyframe);
+    const auto known = std::find_if(found.begin(), found.end(), [&](const Found& f) {
+      return f.plane.floor == node.floor && fits(factor, f.plane, gate);
+    });
+    if (known == found.end()) {
+      found.push_back({planeFrom(factor.measurement, node.T_map_body, node.floor), {&factor}});
+      continue;
+    }
+    Polygon2d extent = extentOf(known->plane);
+    const Polygon2d more = extentOn(known->plane, factor.measurement, node.T_map_body);
+    extent.insert(extent.end(), more.begin(), more.end());
+    setExtent(known->plane, std::move(extent));
+    known->seen.push_back(&factor);
+  }
+  for (const Found& f : found) {
+    if (f.seen.size() < 2) continue;
+    const ObservationFactor& newest = *f.seen.back();
+    map({f.seen.front()->keyframe, f.seen.front()->measurement, f.plane, {}});
+    const PlaneNode& plane = builder_.graph().planes.rbegin()->second;
+    builder_.setExtent(plane.id, extentOf(f.plane));
+    for (size_t i = 1; i < f.seen.size(); ++i)
+      builder_.addObservation(f.seen[i]->keyframe, plane.id, f.seen[i]->measurement);
+    // How old it is, mapMended() says.
+    tracks_[plane.id] = {atAnchor(newest.measurement, keyframes.at(newest.keyframe).T_map_body, plane),
+                         plane.normal_map, keyframes.rbegin()->second.covariance, newest.keyframe};
+  }
 }
 
 void PlaneLayer::refreshCovariances() {

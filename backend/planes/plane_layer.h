@@ -43,6 +43,15 @@ class PlaneLayer {
   // Proof from elsewhere (a room) that the two are one: `into` lives on.
   void merge(PlaneId from, PlaneId into);
 
+  // The map was bent by a loop that is none, and lies again as odometry has it, roughly: what was taken for
+  // one plane on the word of that loop comes apart.
+  void mapUnbent();
+
+  // Loops have moved the map. Observations that do not fit their plane any more go to the one they do fit, or
+  // are dropped; extents are made anew; and for some rounds all planes are looked at for twins.
+  // `newest`: covariance of the newest keyframe's pose relative to each other keyframe (tangent of body).
+  void mapMended(const std::map<KeyframeId, Matrix6d>& newest);
+
   // Covariances as the whole graph has them now.
   void refreshCovariances();
 
@@ -91,6 +100,11 @@ class PlaneLayer {
   void pairFaces(PlaneId plane);
   void pairHeights(PlaneId plane);
   void remakeExtents();
+  // What is off its own plane by more than `own` goes to the one it is nearest to within `other`.
+  void reassociate(const AssociationGate& own, const AssociationGate& other);
+  bool fits(const ObservationFactor& factor, const PlaneNode& plane, const AssociationGate& gate) const;
+  PlaneId planeFor(const ObservationFactor& factor, const AssociationGate& gate) const;
+  void mapApart(const std::vector<ObservationFactor>& astray, const AssociationGate& gate);
 
   PlaneLayerConfig config_;
   GraphBuilder& builder_;
@@ -99,6 +113,7 @@ class PlaneLayer {
   std::vector<Unmapped> unmapped_;
   std::map<std::pair<PlaneId, PlaneId>, int> twins_;  // keyframes that took the two for one
   std::vector<PlaneId> seen_;                         // in this round
+  int rounds_to_look_at_all_ = 0;                     // for twins, since the map was mended
   std::set<PlaneId> upright_unknown_;                 // mapped planes that await an `up` to be compared with
   std::map<PlaneId, Announced> announced_;
   std::set<PlaneId> merged_away_;

@@ -11,6 +11,10 @@ constexpr double kMinFit_m = 0.8;   // less path says nothing of slopes
 constexpr double kRise_m = 0.15;    // gait and thresholds move the body less
 constexpr double kLevel_m = 0.12;   // heights within a level walk
 constexpr double kArrival_m = 1.5;  // level walk that ends a climb
+// A ramp is too gentle to tell on a short stretch: what the heights drift by is less than this slope (1:22)
+// over a long one. After a ramp more must be walked before it is told from its end.
+constexpr double kRampFit_m = 8.0, kRampSlope = 0.045, kRampRise_m = 0.3;
+constexpr double kRampArrival_m = 6.0;
 // Storeys lie further apart; lower levels are landings and platforms, until the robot walks about on them.
 constexpr double kStorey_m = 1.8;
 constexpr double kPlatform_m = 5.0;
@@ -52,14 +56,21 @@ void StoreyTracker::add(const MapKeyframe& keyframe) {
 }
 
 void StoreyTracker::onStorey() {
-  const size_t first = firstWithin(kFit_m);
   const Step& now = steps_.back();
-  const double begin_z = steps_[first].z_m;
-  const bool climbs = now.path_m - steps_[first].path_m > kMinFit_m &&
-                      std::abs(slope(first)) > config_.climb_slope && std::abs(now.z_m - begin_z) > kRise_m;
+  const auto climbs = [&](size_t first, double least_m, double least_slope, double rise_m) {
+    return now.path_m - steps_[first].path_m > least_m && std::abs(slope(first)) > least_slope &&
+           std::abs(now.z_m - steps_[first].z_m) > rise_m;
+  };
   assign(now.id, current_);
-  if (!climbs) return;
+  size_t first = firstWithin(kFit_m);
+  if (!climbs(first, kMinFit_m, config_.climb_slope, kRise_m)) {
+    first = std::max(arrived_, firstWithin(kRampFit_m));
+    if (!climbs(first, kRampFit_m / 2, kRampSlope, kRampRise_m)) return;
+  }
+  const double begin_z = steps_[first].z_m;
   climbing_ = true;
+  // On the climb itself the robot walks half of this within a level walk's heights.
+  arrival_m_ = std::clamp(2 * kLevel_m / std::abs(slope(first)), kArrival_m, kRampArrival_m);
   climb_begin_ = first;
   while (std::abs(steps_[climb_begin_].z_m - begin_z) < kLevel_m) ++climb_begin_;
   for (size_t i = climb_begin_; i < steps_.size(); ++i) assign(steps_[i].id, {});
@@ -71,7 +82,7 @@ void StoreyTracker::onClimb() {
   size_t first = steps_.size() - 1;
   while (first > climb_begin_ && std::abs(steps_[first - 1].z_m - now.z_m) < kLevel_m) --first;
   const double level_m = now.path_m - steps_[first].path_m;
-  if (level_m < kArrival_m) return;
+  if (level_m < arrival_m_) return;
   FloorId nearest;
   double gap = 0;
   for (const auto& [floor, z] : heights_)
@@ -89,6 +100,7 @@ void StoreyTracker::onClimb() {
 
 // From step `first` on the robot is there. What it took for a climb was none if it never left the storey.
 void StoreyTracker::arrive(FloorId floor, size_t first) {
+  arrived_ = first;
   const double home = heights_.at(current_);
   const bool left =
       std::any_of(steps_.begin() + static_cast<std::ptrdiff_t>(climb_begin_), steps_.end(),

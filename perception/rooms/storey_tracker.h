@@ -14,8 +14,8 @@ struct StoreyConfig {
 };
 
 // Which storey each keyframe stands on, from the heights along the path: a climb ends where the robot has
-// walked level again, on a storey that is known at this height, or on a new one. A lift shows no motion, so
-// nothing changes in it.
+// walked level again, on a storey that is known at this height, or on a new one. Stairs and ramps are climbs.
+// A lift shows no motion, so nothing changes in it.
 class StoreyTracker {
  public:
   explicit StoreyTracker(const StoreyConfig& config) : config_(config) {}
@@ -48,6 +48,8 @@ class StoreyTracker {
   FloorId current_;  // the storey the robot is on, or left last
   bool climbing_ = false;
   size_t climb_begin_ = 0;  // first step of the climb
+  double arrival_m_ = 0;    // walked level, ends this climb
+  size_t arrived_ = 0;      // first step after the last climb
   std::map<KeyframeId, FloorId> floors_;
   std::map<KeyframeId, FloorId> changed_;
   std::map<FloorId, double> heights_;

@@ -69,6 +69,41 @@ TEST(FloorLayerTest, AnUpperStoreyIsNotTorn) {
   EXPECT_LT((step(with.graph()).inverse() * step(without.graph())).translation.norm(), 0.01);
 }
 
+// The same with a correction of half a metre up there: what is below stays, and the way up keeps its length.
+TEST(FloorLayerTest, ALoopOnAnUpperStoreyDoesNotTearItFromTheLower) {
+  const RoomWorld world =
+      makeRoomWorld({boxRoom(-2, -3, 5, 6), boxRoom(3.2, -3, 4, 6), boxRoom(-2, -3, 5, 6, 1, 3.0),
+                     boxRoom(3.2, -3, 4, 6, 1, 3.0)},
+                    {{0, 8}, {1, 8}, {2, 8}, {3, 8}, {2, 8}}, {.drift_m = 0.22, .odometry_sigma_m = 0.02});
+  RoomRun run;
+  run.all(world, true);
+  const auto between = [&](size_t from, size_t to) {
+    return run.graph().keyframes.at(KeyframeId{static_cast<int64_t>(from)}).T_map_body.inverse() *
+           run.graph().keyframes.at(KeyframeId{static_cast<int64_t>(to)}).T_map_body;
+  };
+  const SE3 lower = between(0, 15), way_up = between(15, 16);
+  const SE3 truth = world.truth[16].inverse() * world.truth[39];
+  ASSERT_GT((between(16, 39).inverse() * truth).translation.norm(), 0.3);
+  LoopClosure loop;
+  loop.id = LoopId{0};
+  loop.pose.kind = RelativePoseKind::kLoop;
+  loop.pose.from = KeyframeId{16};
+  loop.pose.to = KeyframeId{39};
+  loop.pose.T_from_to = truth;
+  loop.pose.covariance = 1e-4 * Matrix6d::Identity();
+  LoopClosures loops;
+  loops.accepted = {loop};
+  run.newest = run.backend.step({.round = run.round++, .time = Time{}, .keyframe = {}, .loops = loops});
+  for (int i = 0; i < 3; ++i) run.idle(seenRooms(world, run.graph(), run.round - 1));
+  run.graph().check();
+  EXPECT_EQ(run.count("loop"), 1);
+  EXPECT_LT((between(16, 39).inverse() * truth).translation.norm(), 0.03);
+  EXPECT_LT((between(15, 16).inverse() * way_up).translation.norm(), 0.02);
+  EXPECT_LT((between(0, 15).inverse() * lower).translation.norm(), 0.02);
+  for (const auto& [id, node] : run.graph().keyframes)
+    EXPECT_EQ(node.floor, FloorId{id.value < 16 ? 0 : 1}) << id.str();
+}
+
 TEST(FloorLayerTest, AStoreyWithoutHeightHasNone) {
   const RoomWorld world = twoStoreys(false);
   RoomRun run;

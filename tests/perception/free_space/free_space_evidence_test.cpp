@@ -121,6 +121,22 @@ TEST(FreeSpaceEvidenceTest, WallsMoveWithTheirKeyframe) {
   EXPECT_EQ(count(rooms(moved), CellState::kFree), count(rooms(straight), CellState::kFree));
 }
 
+// Mistake 12 of earlier systems: a map in a frame that drifts. A loop moves keyframes by metres and turns
+// them.
+TEST(FreeSpaceEvidenceTest, AfterALoopNothingIsLeftWhereThePosesWere) {
+  FreeSpaceEvidence moved{EvidenceConfig{}}, straight{EvidenceConfig{}};
+  const auto mended = [](int i) { return SE3(so3Exp({0, 0, 0.4}), {-5.2, 3.1, 0}) * bodyAt(0.3 * i, 0); };
+  MapUpdate loop;
+  for (int i = 0; i < 6; ++i) {
+    const Keyframe keyframe = boxRoom().keyframe(i, bodyAt(0.3 * i, 0));
+    moved.step(keyframe, updateOf({mapKeyframe(i, bodyAt(0.3 * i, 0))}));
+    straight.step(keyframe, updateOf({mapKeyframe(i, mended(i))}));
+    loop.keyframes.push_back(mapKeyframe(i, mended(i)));
+  }
+  moved.step(std::nullopt, loop);
+  EXPECT_EQ(allVotes(moved), allVotes(straight));
+}
+
 TEST(FreeSpaceEvidenceTest, WayAndBackIsAsIfNothingHadMoved) {
   FreeSpaceEvidence evidence{EvidenceConfig{}};
   for (int i = 0; i < 4; ++i) look(evidence, boxRoom(), i, bodyAt(-1.5 + i, 0.3 * i));

@@ -80,6 +80,46 @@ TEST_F(StoreyTrackerTest, RampAndStepsOfLessThanAMetreStayOnTheStorey) {
   EXPECT_EQ(count(FloorId{0}), static_cast<int64_t>(keyframes_.size())) << "none is left between storeys";
 }
 
+// Wheelchair ramps (1:12) and the steeper ones of garages: one storey, the way, the other; and back.
+TEST_F(StoreyTrackerTest, ARampLeadsToANewStoreyWithoutFlicker) {
+  for (const double slope : {1.0 / 15, 1.0 / 12, 0.14})
+    for (const double step_m : {0.25, 1.0}) {
+      SCOPED_TRACE(testing::Message() << "slope " << slope << ", step " << step_m);
+      tracker_ = StoreyTracker{StoreyConfig{}};
+      keyframes_.clear();
+      told_.clear();
+      x_ = z_ = 0;
+      std::vector<FloorId> seen;
+      const auto note = [&](double distance_m, double z_m) {
+        const double begin = z_;
+        const int n = static_cast<int>(std::ceil(distance_m / step_m));
+        for (int i = 1; i <= n; ++i) {
+          const FloorId now = walk(step_m, begin + (z_m - begin) * i / n, step_m);
+          if (seen.empty() || seen.back() != now) seen.push_back(now);
+        }
+      };
+      note(12, 0);
+      note(3.2 / slope, 3.2);
+      note(12, 3.2);
+      note(3.2 / slope, 0);
+      note(12, 0);
+      const std::vector<FloorId> expected = {FloorId{0}, FloorId{}, FloorId{1}, FloorId{}, FloorId{0}};
+      EXPECT_EQ(seen, expected);
+      EXPECT_EQ(tracker_.bodyHeights().size(), 2u);
+      EXPECT_NEAR(tracker_.bodyHeights().at(FloorId{1}), 3.2 + kBody_m, 0.05);
+      EXPECT_NEAR(tracker_.bodyHeights().at(FloorId{0}), kBody_m, 0.05);
+    }
+}
+
+TEST_F(StoreyTrackerTest, AGentleRampWithinAStoreyLeavesNothingBetween) {
+  walk(10, 0);
+  walk(8, 0.6);
+  walk(10, 0.6);
+  EXPECT_EQ(last(), FloorId{0});
+  EXPECT_EQ(count(FloorId{0}), static_cast<int64_t>(keyframes_.size()));
+  EXPECT_EQ(tracker_.bodyHeights().size(), 1u);
+}
+
 TEST_F(StoreyTrackerTest, LandingHalfWayIsNoStorey) {
   walk(8, 0);
   walk(3, 1.6);
