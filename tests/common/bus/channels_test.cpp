@@ -47,7 +47,7 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kStatusFreeSpace, false);
   expectRow(kStatusRooms, false);
   expectRow(kStatusBackend, false);
-  EXPECT_EQ(table().size(), 25u);
+  EXPECT_EQ(table().size(), 26u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {
