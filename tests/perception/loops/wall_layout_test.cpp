@@ -38,6 +38,7 @@ std::vector<WallPoint> room(double x0 = 0, double y0 = 0) {
 std::vector<WallPoint> seenFrom(const std::vector<WallPoint>& walls, const Eigen::Vector2d& p, double yaw) {
   const Eigen::Rotation2D<float> R(static_cast<float>(-yaw));
   std::vector<WallPoint> out;
+  out.reserve(walls.size());
   for (const WallPoint& w : walls)
     out.push_back({R * (w.position - p.cast<float>()), w.heading_rad - static_cast<float>(yaw)});
   return out;
