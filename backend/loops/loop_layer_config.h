@@ -18,7 +18,7 @@ struct LoopLayerConfig {
     v.field("agreement_chi2", agreement_chi2, 1.0, 1e6,
             "A loop that was switched off comes back below this (95 %)");
     v.field("chain_slack", chain_slack, 1.0, 100.0,
-            "How much larger the drift may be than odometry says, for a loop to be believed");
+            "How much larger odometry's errors may be than it says, for a loop to be believed");
     v.field("large_m", large_m, 0.0, 100.0, "A loop that is off by more moves the map before it is solved");
     v.field("large_rad", large_rad, 0.0, 3.2, "Likewise, in direction");
   }

@@ -37,6 +37,9 @@ std::optional<RelativePose> OdometryChain::between(KeyframeId from, KeyframeId t
     append(way, z->T_from_to.inverse(), Ad * z->covariance * Ad.transpose());
   }
   for (auto z = forth.rbegin(); z != forth.rend(); ++z) append(way, (*z)->T_from_to, (*z)->covariance);
+  // No sum of n errors has more than n times the sum of their covariances, which it has if they are all
+  // alike.
+  way.covariance *= static_cast<double>(std::max<size_t>(1, back.size() + forth.size()));
   return way;
 }
 

@@ -14,7 +14,8 @@ class OdometryChain {
   // z.to is a new keyframe, z.from one before it.
   void add(const RelativePose& z) { from_.emplace(z.to, z); }
 
-  // Composed from the one to the other (kind odometry); none if a keyframe on the way is not known.
+  // Composed from the one to the other (kind odometry); none if a keyframe on the way is not known. Legs err
+  // by bias, not by chance: the covariance is that of steps that all err alike.
   std::optional<RelativePose> between(KeyframeId from, KeyframeId to) const;
 
  private:

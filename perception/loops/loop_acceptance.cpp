@@ -23,6 +23,13 @@ void LoopAcceptance::forget(double walked_m, const WalkedPath& path) {
   while (candidates_.size() > kMaxCandidates) candidates_.pop_front();
 }
 
+void LoopAcceptance::remove(KeyframeId from, KeyframeId to) {
+  std::erase_if(candidates_, [&](const Candidate& c) {
+    return c.hypothesis.loop.from == from && c.hypothesis.loop.to == to;
+  });
+  std::erase_if(possible_, [&](const MeasuredLoop& m) { return m.from == from && m.to == to; });
+}
+
 bool LoopAcceptance::contradicted(const Candidate& candidate, const WalkedPath& path) const {
   return std::any_of(possible_.begin(), possible_.end(), [&](const MeasuredLoop& other) {
     return !consistent(candidate.hypothesis.loop, other, path);

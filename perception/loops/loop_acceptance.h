@@ -21,6 +21,8 @@ class LoopAcceptance {
   };
   // What a keyframe's search found.
   Change step(const LoopVerdict& verdict, const WalkedPath& path);
+  // The loop cannot be, for reasons that are not seen here.
+  void remove(KeyframeId from, KeyframeId to);
 
  private:
   struct Candidate {

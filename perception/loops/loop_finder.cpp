@@ -7,6 +7,12 @@
 #include "perception/loops/loop_acceptance.h"
 
 namespace sgraphs {
+namespace {
+
+// A new keyframe's storey is told one round late, with the rooms that were made of it.
+constexpr int64_t kSettled_rounds = 2;
+
+}  // namespace
 
 class LoopFinder::Impl {
  public:
@@ -29,13 +35,15 @@ class LoopFinder::Impl {
       const double walked_m = path_.walkedTo(keyframe->id);
       if (walked_m - searched_m_ >= config_.search_spacing_m) {
         searched_m_ = walked_m;
-        waiting_.push_back(keyframe->id);
+        waiting_.push_back({keyframe->id, update.round + kSettled_rounds});
       }
     }
-    if (!waiting_.empty()) {
-      work(waiting_.front(), loops);
+    if (!waiting_.empty() && waiting_.front().due_round <= update.round) {
+      work(waiting_.front().keyframe, loops);
       waiting_.pop_front();
     }
+    withdrawAcrossStoreys(loops);
+    std::sort(loops.withdrawn.begin(), loops.withdrawn.end());
     loops.searching = !waiting_.empty();
     return loops;
   }
@@ -61,22 +69,41 @@ class LoopFinder::Impl {
       path_.link(m.from, m.to);
       looped_m_ = std::max(looped_m_, path_.walkedTo(m.to));
     }
-    for (const MeasuredLoop& m : change.withdrawn) {
-      const auto it = ids_.find({m.from, m.to});
-      if (it == ids_.end()) continue;
-      loops.withdrawn.push_back(it->second);
-      ids_.erase(it);
-      path_.unlink(m.from, m.to);
-    }
-    std::sort(loops.withdrawn.begin(), loops.withdrawn.end());
+    for (const MeasuredLoop& m : change.withdrawn) withdraw(m.from, m.to, loops);
   }
+
+  void withdraw(KeyframeId from, KeyframeId to, LoopClosures& loops) {
+    const auto it = ids_.find({from, to});
+    if (it == ids_.end()) return;
+    loops.withdrawn.push_back(it->second);
+    ids_.erase(it);
+    path_.unlink(from, to);
+  }
+
+  // After a ride in a lift the storey comes to light late: what was joined by then is taken back.
+  void withdrawAcrossStoreys(LoopClosures& loops) {
+    std::vector<std::pair<KeyframeId, KeyframeId>> across;
+    for (const auto& [ends, id] : ids_) {
+      const FloorId a = memory_.poseOf(ends.first).floor, b = memory_.poseOf(ends.second).floor;
+      if (a.valid() && b.valid() && a != b) across.push_back(ends);
+    }
+    for (const auto& [from, to] : across) {
+      withdraw(from, to, loops);
+      acceptance_.remove(from, to);
+    }
+  }
+
+  struct Waiting {
+    KeyframeId keyframe;
+    int64_t due_round = 0;
+  };
 
   LoopsConfig config_;
   WalkedPath path_;
   PlaceMemory memory_;
   LoopSearch search_;
   LoopAcceptance acceptance_;
-  std::deque<KeyframeId> waiting_;
+  std::deque<Waiting> waiting_;
   std::map<std::pair<KeyframeId, KeyframeId>, LoopId> ids_;
   int64_t next_id_ = 0;
   double searched_m_ = 0;

@@ -71,6 +71,7 @@ void appendThinned(const std::vector<Surfel>& all, size_t max, std::vector<Surfe
 
 std::vector<Surfel> patchesOf(const Keyframe& keyframe, size_t max_upright, size_t max_level) {
   std::vector<Cubes> levels;
+  levels.reserve(kLevels.size());
   for (const Level& level : kLevels) levels.emplace_back(level.cube_m);
   for (const KeyframePoint& p : keyframe.points) {
     const Eigen::Vector3d viewpoint = keyframe.T_keyframe_body[p.scan] * keyframe.T_body_lidar.translation;

@@ -74,7 +74,7 @@ TEST(FloorLayerTest, ALoopOnAnUpperStoreyDoesNotTearItFromTheLower) {
   const RoomWorld world =
       makeRoomWorld({boxRoom(-2, -3, 5, 6), boxRoom(3.2, -3, 4, 6), boxRoom(-2, -3, 5, 6, 1, 3.0),
                      boxRoom(3.2, -3, 4, 6, 1, 3.0)},
-                    {{0, 8}, {1, 8}, {2, 8}, {3, 8}, {2, 8}}, {.drift_m = 0.22, .odometry_sigma_m = 0.02});
+                    {{0, 8}, {1, 8}, {2, 8}, {3, 8}, {2, 8}}, {.drift_m = 0.22, .odometry_sigma_m = 0.025});
   RoomRun run;
   run.all(world, true);
   const auto between = [&](size_t from, size_t to) {
@@ -94,10 +94,11 @@ TEST(FloorLayerTest, ALoopOnAnUpperStoreyDoesNotTearItFromTheLower) {
   LoopClosures loops;
   loops.accepted = {loop};
   run.newest = run.backend.step({.round = run.round++, .time = Time{}, .keyframe = {}, .loops = loops});
+  for (const std::string& line : run.newest.refused) ADD_FAILURE() << line;
   for (int i = 0; i < 3; ++i) run.idle(seenRooms(world, run.graph(), run.round - 1));
   run.graph().check();
   EXPECT_EQ(run.count("loop"), 1);
-  EXPECT_LT((between(16, 39).inverse() * truth).translation.norm(), 0.03);
+  EXPECT_LT((between(16, 39).inverse() * truth).translation.norm(), 0.1);
   EXPECT_LT((between(15, 16).inverse() * way_up).translation.norm(), 0.02);
   EXPECT_LT((between(0, 15).inverse() * lower).translation.norm(), 0.02);
   for (const auto& [id, node] : run.graph().keyframes)

@@ -43,12 +43,14 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kStatusPlanes, false);
   expectRow(kFreeSpace, false);
   expectRow(kRooms, false);
+  expectRow(kLoopClosures, false);
   expectRow(kMapChunk, false);
   expectRow(kStatusFreeSpace, false);
   expectRow(kStatusRooms, false);
+  expectRow(kStatusLoops, false);
   expectRow(kStatusBackend, false);
   expectRow(kStatusSpotBridge, false);
-  EXPECT_EQ(table().size(), 26u);
+  EXPECT_EQ(table().size(), 29u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {

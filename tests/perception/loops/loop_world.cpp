@@ -27,6 +27,39 @@ double angleOf(const SE3& T) {
   return so3Log(T.rotation).norm();
 }
 
+struct DriftedKeyframe {
+  Keyframe keyframe;
+  SE3 T_map_body;
+};
+
+// The walk as a map has it that begins at the truth and errs from step to step.
+std::vector<DriftedKeyframe> driftedKeyframes(const LoopWalk& walk, const MapDrift& drift) {
+  const double sigma_m = drift.registered ? 0.003 : 0.02;
+  const double sigma_rad = drift.registered ? 0.0008 : 0.003;
+  std::vector<DriftedKeyframe> out;
+  for (size_t i = 0; i < walk.keyframes.size(); ++i) {
+    DriftedKeyframe d{walk.keyframes[i], walk.T_building_body[i]};
+    if (i > 0) {
+      RelativePose r;
+      r.from = walk.keyframes[i - 1].id;
+      r.to = d.keyframe.id;
+      r.T_from_to = walk.T_building_body[i - 1].inverse() * walk.T_building_body[i];
+      const double m = r.T_from_to.translation.norm();
+      r.T_from_to.rotation = r.T_from_to.rotation * so3Exp({0, 0, drift.yaw_rad_per_m * m});
+      r.T_from_to.translation *= 1.0 + drift.scale;
+      r.registered = drift.registered;
+      r.covariance.setZero();
+      r.covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+          Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+      d.T_map_body = out.back().T_map_body * r.T_from_to;
+      d.keyframe.relative_poses.push_back(r);
+    }
+    d.keyframe.T_odom_body = d.T_map_body;
+    out.push_back(std::move(d));
+  }
+  return out;
+}
+
 }  // namespace
 
 SE3 bodyAt(double x_m, double y_m, double heading_rad, double floor_z_m) {
@@ -89,54 +122,43 @@ simulate::Scene shippedScene(const std::string& name) {
 }
 
 LoopOutcome findLoops(const LoopWalk& walk, const MapDrift& drift, const LoopsConfig& config,
-                      const std::vector<FloorId>& floors) {
+                      const std::vector<FloorId>& floors, size_t late_rounds) {
+  const size_t idle_rounds = late_rounds + 5;
+  const std::vector<DriftedKeyframe> drifted = driftedKeyframes(walk, drift);
   LoopFinder finder(config);
   LoopOutcome outcome;
-  std::vector<MapKeyframe> map;
-  const double sigma_m = drift.registered ? 0.003 : 0.02;
-  const double sigma_rad = drift.registered ? 0.0008 : 0.003;
-  for (size_t i = 0; i < walk.keyframes.size(); ++i) {
-    Keyframe k = walk.keyframes[i];
-    SE3 T = walk.T_building_body[i];
-    if (i > 0) {
-      SE3 step = walk.T_building_body[i - 1].inverse() * T;
-      step.rotation = step.rotation * so3Exp({0, 0, drift.yaw_rad_per_m * step.translation.norm()});
-      step.translation *= 1.0 + drift.scale;
-      T = map.back().T_map_body * step;
-      RelativePose r;
-      r.from = walk.keyframes[i - 1].id;
-      r.to = k.id;
-      r.T_from_to = step;
-      r.registered = drift.registered;
-      r.covariance.setZero();
-      r.covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
-          Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
-      k.relative_poses.push_back(r);
-    }
-    k.T_odom_body = T;
-    map.push_back({k.id, floors.empty() ? FloorId{0} : floors[i], k.time, T});
-    const SE3 T_map_true =
-        map.front().T_map_body * walk.T_building_body.front().inverse() * walk.T_building_body[i];
-    outcome.largest_drift_m =
-        std::max(outcome.largest_drift_m, (T_map_true.translation - T.translation).norm());
+  const auto floorOf = [&](size_t i) { return floors.empty() ? FloorId{0} : floors[i]; };
+  const auto place = [&](size_t i, FloorId floor) {
+    return MapKeyframe{drifted[i].keyframe.id, floor, drifted[i].keyframe.time, drifted[i].T_map_body};
+  };
+  for (size_t round = 0; round < drifted.size() + idle_rounds; ++round) {
     MapUpdate update;
-    update.round = static_cast<int64_t>(i);
-    update.time = k.time;
-    update.newest = k.id;
-    update.keyframes.push_back(map.back());
-    const LoopClosures loops = finder.step(k, update);
-    for (const LoopClosure& loop : loops.accepted) {
-      const SE3 T_true = walk.T_building_body[static_cast<size_t>(loop.pose.from.value)].inverse() *
-                         walk.T_building_body[static_cast<size_t>(loop.pose.to.value)];
-      const SE3 error = T_true.inverse() * loop.pose.T_from_to;
-      const double m = error.translation.norm();
-      const bool wrong = m > 0.3 || angleOf(error) > 0.0873 ||
-                         (!floors.empty() && floors[static_cast<size_t>(loop.pose.from.value)] != floors[i]);
-      outcome.false_loops += wrong;
-      if (!wrong) outcome.worst_m = std::max(outcome.worst_m, m);
-      outcome.accepted.push_back(loop);
-    }
+    update.round = static_cast<int64_t>(round);
+    update.idle = round >= drifted.size();
+    update.newest = drifted[std::min(round, drifted.size() - 1)].keyframe.id;
+    if (round >= late_rounds && round - late_rounds < drifted.size())
+      update.keyframes.push_back(place(round - late_rounds, floorOf(round - late_rounds)));
+    if (!update.idle) update.keyframes.push_back(place(round, floorOf(0)));
+    const LoopClosures loops =
+        finder.step(update.idle ? std::nullopt : std::optional<Keyframe>(drifted[round].keyframe), update);
+    outcome.accepted.insert(outcome.accepted.end(), loops.accepted.begin(), loops.accepted.end());
     outcome.withdrawn.insert(outcome.withdrawn.end(), loops.withdrawn.begin(), loops.withdrawn.end());
+    outcome.searching = loops.searching;
+  }
+  for (size_t i = 0; i < drifted.size(); ++i) {
+    const SE3 T_map_true = walk.T_building_body[i];
+    outcome.largest_drift_m = std::max(outcome.largest_drift_m,
+                                       (T_map_true.translation - drifted[i].T_map_body.translation).norm());
+  }
+  for (const LoopClosure& loop : outcome.accepted) {
+    if (std::count(outcome.withdrawn.begin(), outcome.withdrawn.end(), loop.id) > 0) continue;
+    const auto from = static_cast<size_t>(loop.pose.from.value), to = static_cast<size_t>(loop.pose.to.value);
+    const SE3 T_true = walk.T_building_body[from].inverse() * walk.T_building_body[to];
+    const SE3 error = T_true.inverse() * loop.pose.T_from_to;
+    const double m = error.translation.norm();
+    const bool wrong = m > 0.3 || angleOf(error) > 0.0873 || floorOf(from) != floorOf(to);
+    outcome.false_loops += wrong;
+    if (!wrong) outcome.worst_m = std::max(outcome.worst_m, m);
   }
   return outcome;
 }

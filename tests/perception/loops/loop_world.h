@@ -36,13 +36,16 @@ struct MapDrift {
 struct LoopOutcome {
   std::vector<LoopClosure> accepted;
   std::vector<LoopId> withdrawn;
+  bool searching = false;      // after the last round
   double largest_drift_m = 0;  // of a keyframe's place in map
-  int false_loops = 0;         // more than 0.3 m or 5 degrees off the truth
-  double worst_m = 0;          // of the others
+  int false_loops = 0;  // more than 0.3 m or 5 degrees off the truth, or between storeys; not withdrawn
+  double worst_m = 0;   // of the others
 };
 
-// Feeds the walk round by round, with a map that nothing corrects. `floors`: by keyframe; empty: one storey.
+// Feeds the walk round by round, with a map that nothing corrects, and a few idle rounds. `floors`: by
+// keyframe; empty: one storey. The map tells a keyframe's storey `late_rounds` after the keyframe, and until
+// then the first one's.
 LoopOutcome findLoops(const LoopWalk& walk, const MapDrift& drift, const LoopsConfig& config = {},
-                      const std::vector<FloorId>& floors = {});
+                      const std::vector<FloorId>& floors = {}, size_t late_rounds = 1);
 
 }  // namespace sgraphs::test
