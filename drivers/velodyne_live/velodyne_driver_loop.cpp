@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "common/bus/journal_bus.h"
 #include "common/bus/lcm_bus.h"
 #include "drivers/host_clock.h"
 #include "drivers/session_source.h"
@@ -66,7 +67,8 @@ void report(const VelodyneDriverNode& node) {
 int runVelodyneDriver(const ProcessText& text, const ProcessSetup& setup,
                       const VelodyneDriverOptions& options) {
   const DriverConfig& config = setup.config.drivers;
-  LcmBus bus(setup.lcm_url);
+  LcmBus lcm(setup.lcm_url);
+  JournalBus bus(lcm, "", setup.boot);  // numbers begin again: there is nothing to resume
   Input input = openInput(config.velodyne_driver, options);
   DatagramSource& source = *input.source;
   std::optional<Session> session;

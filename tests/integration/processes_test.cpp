@@ -121,7 +121,7 @@ TEST_F(ProcessesTest, AnswerWithTheContractsExitCodes) {
   EXPECT_EQ(ask("replay --help").code, 0);
   EXPECT_EQ(ask("").code, 2);
   EXPECT_EQ(ask("reply").code, 2);
-  for (const char* name : {"spy", "bench speed", "demo", "view"}) {
+  for (const char* name : {"bench speed", "demo", "view"}) {
     const Outcome answer = ask(std::string(name) + " --any thing");
     EXPECT_EQ(answer.code, 2);
     EXPECT_EQ(answer.text, std::string("sgraphs: ") + name + ": not in this version\n");

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "common/base/error.h"
 #include "common/bus/lcm_bus.h"
@@ -14,9 +15,26 @@ struct Arguments {
   bool json = false, strict = false;
 };
 
+// Nothing if it is not valid, which is a finding of its own.
+std::optional<SystemConfig> configOf(const DoctorOptions& options) {
+  SystemConfig config;
+  try {
+    if (!options.config_file.empty()) loadConfigFile(visitOf(config), options.config_file);
+    for (const std::string& assignment : options.assignments) setConfigValue(visitOf(config), assignment);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  return config;
+}
+
 void run(Arguments& arguments) {
   DoctorOptions& options = arguments.options;
   options.lcm_url = fullLcmUrl(options.lcm_url);
+  if (const std::optional<SystemConfig> config = configOf(options)) {
+    options.data_port = config->drivers.velodyne_driver.data_port;
+    options.position_port = config->drivers.velodyne_driver.position_port;
+    if (options.spot_host.empty()) options.spot_host = config->drivers.spot_bridge.host;
+  }
   std::vector<Finding> findings = examine(options);
   for (Finding& finding : findings)
     if (arguments.strict && finding.level == Finding::Level::kWarn) finding.level = Finding::Level::kFail;
@@ -43,15 +61,9 @@ void addDoctor(CLI::App& app) {
   command->add_option("--set", options.assignments, "One setting, section.key=value; may be repeated")
       ->expected(1)
       ->take_all();
-  command->add_option("--spot", options.spot_host, "Address of the robot");
+  command->add_option("--spot", options.spot_host, "Address of the robot; default: drivers.spot_bridge.host");
   command->add_option("-o,--output", options.out_dir, "Folder that results shall go to");
   command->add_option("--record", options.record_dir, "Folder that recordings shall go to");
-  command->add_option("--data-port", options.data_port, "UDP port of the LiDAR's packets")
-      ->check(CLI::Range(1, 65535))
-      ->capture_default_str();
-  command->add_option("--position-port", options.position_port, "UDP port of its position packets")
-      ->check(CLI::Range(1, 65535))
-      ->capture_default_str();
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -53,7 +53,10 @@ void run(RunOptions& options) {
   if (!options.config_file.empty()) loadConfigFile(visitOf(options.config), options.config_file);
   for (const std::string& assignment : options.assignments)
     setConfigValue(visitOf(options.config), assignment);
+  if (options.spot_host.empty()) options.spot_host = options.config.drivers.spot_bridge.host;
+  if (!options.pcap.empty() || !options.log.empty()) options.spot_host.clear();
   options.lcm_url = fullLcmUrl(options.lcm_url);
+  blockStopSignals();  // before LCM's thread is
   LiveRun live(options);
   report(live.run(), options);
 }
@@ -80,9 +83,12 @@ void addRun(CLI::App& app) {
   command->add_option("--rate", options->rate, "Speed of --pcap or --log")
       ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
-  command->add_option("--spot", options->spot_host, "Address of a Spot whose odometry is used");
-  command->add_option("--T-body-lidar", options->T_body_lidar,
-                      "LiDAR's mount on the body, \"x y z qx qy qz qw\"; a log brings its own");
+  command->add_option("--spot", options->spot_host,
+                      "Address of a Spot whose odometry is used; default: drivers.spot_bridge.host");
+  command->add_option(
+      "--T-body-lidar", options->T_body_lidar,
+      "LiDAR's mount on the body, \"x y z qx qy qz qw\"; default: drivers.session.T_body_lidar; a log "
+      "brings its own");
   command->add_option(
       "--odometry", options->odometry,
       "Odometry factor: lidar, encoder or fused; default: fused if there is odometry, else lidar");

@@ -21,10 +21,10 @@ struct DoctorOptions {
   std::string lcm_url;  // full
   std::string config_file;
   std::vector<std::string> assignments;
-  std::string out_dir, record_dir;  // empty: not asked for
-  std::string spot_host;            // empty: no robot
-  std::string programs_dir;         // of our programs; empty: beside this one
-  int data_port = 2368, position_port = 8308;
+  std::string out_dir, record_dir;             // empty: not asked for
+  std::string spot_host;                       // empty: no robot
+  std::string programs_dir;                    // of our programs; empty: beside this one
+  int data_port = 2368, position_port = 8308;  // of the LiDAR
   double sensor_patience_s = 2;
 };
 

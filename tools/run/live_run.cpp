@@ -17,11 +17,12 @@ namespace fs = std::filesystem;
 using Role = Supervisor::Role;
 
 constexpr int kPoll_ms = 20;
-constexpr double kStart_s = 30;      // for a process to say its first word
-constexpr double kSourceStop_s = 3;  // for a driver to send what it holds
-constexpr double kDrain_s = 0.3;     // for what is on its way
-constexpr double kRepeatEnd_s = 1;   // STREAM_END is said again until the odometry has heard it
-constexpr double kResult_s = 600;    // for the backlog and the files of OUT
+constexpr double kStart_s = 30;       // for a process to say its first word
+constexpr double kSourceStart_s = 5;  // for a source to begin to listen
+constexpr double kSourceStop_s = 3;   // for a driver to send what it holds
+constexpr double kDrain_s = 0.3;      // for what is on its way
+constexpr double kRepeatEnd_s = 1;    // STREAM_END is said again until the odometry has heard it
+constexpr double kResult_s = 600;     // for the backlog and the files of OUT
 constexpr double kStageStop_s = 5;
 
 Time hostClock() {
@@ -102,6 +103,7 @@ RunEnd LiveRun::run() {
   startRecorder();
   session_.publishSession(session_.session().start);
   session_open_ = started_ = true;
+  since_sources_.restart();
   supervisor_.start(Role::kSource);
   supervisor_.start(Role::kPlayer);
   watch();
@@ -114,7 +116,10 @@ RunEnd LiveRun::run() {
 
 void LiveRun::dispatch() {
   bus_.dispatch(kPoll_ms);
-  if (stop_.come()) ++stop_requests_;
+  // A source that has just begun cannot wait for a second: what it has before it knows the session is lost.
+  const bool begins = session_open_ && since_sources_.elapsedSeconds() < kSourceStart_s;
+  if (begins && since_session_.elapsedSeconds() > 0.1) publishSession();
+  if (stop_.requested()) ++stop_requests_;
   if (started_)
     for (const std::string& line : supervisor_.step()) screen_.say(line);
   if (second_.elapsedSeconds() < 1) return;
@@ -122,10 +127,15 @@ void LiveRun::dispatch() {
   everySecond();
 }
 
+// A log keeps its own clock.
+void LiveRun::publishSession() {
+  session_.publishSession(options_.log.empty() ? hostClock() : session_.session().start);
+  since_session_.restart();
+}
+
 void LiveRun::everySecond() {
   const double now_s = since_start_.elapsedSeconds();
-  // A log keeps its own clock.
-  if (session_open_) session_.publishSession(options_.log.empty() ? hostClock() : session_.session().start);
+  if (session_open_ && since_session_.elapsedSeconds() > 0.9) publishSession();
   board_.takeRates(now_s);
   std::map<std::string, int> restarts;
   for (const ProcessRow& row : supervisor_.rows())

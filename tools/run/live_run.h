@@ -9,9 +9,9 @@
 #include "sgraphs/run_result_t.hpp"
 #include "tools/run/run_session.h"
 #include "tools/run/status_board.h"
-#include "tools/run/stop_requests.h"
 #include "tools/run/supervisor.h"
 #include "tools/run/text_screen.h"
+#include "tools/system/stop_signals.h"
 
 namespace sgraphs {
 
@@ -28,7 +28,8 @@ struct RunEnd {
 // watches, restarts what ends before its time, and ends everything in order.
 class LiveRun {
  public:
-  // Makes the folders. Throws Error or UsageError if something asked for cannot be had.
+  // Makes the folders. SIGINT and SIGTERM must be blocked (blockStopSignals). Throws Error or UsageError if
+  // something asked for cannot be had.
   explicit LiveRun(RunOptions options);
 
   // Until the sources come to an end, or SIGINT or SIGTERM asks for it; a second one ends at once.
@@ -46,10 +47,11 @@ class LiveRun {
   // Dispatches until the condition holds; gives up after so many seconds, or if SIGINT comes.
   template <typename Condition>
   bool waitFor(double seconds, Condition condition);
+  void publishSession();
   void everySecond();
   void failIfEnded(Supervisor::Role role);
 
-  StopRequests stop_;  // before LCM's thread is
+  StopSignals stop_;
   RunOptions options_;
   LcmBus bus_;
   RunSession session_;
@@ -57,7 +59,7 @@ class LiveRun {
   Supervisor supervisor_;
   StatusBoard board_;
   TextScreen screen_;
-  Stopwatch since_start_, second_;
+  Stopwatch since_start_, second_, since_session_, since_sources_;
   bool started_ = false;       // from now on what ends is started again
   bool session_open_ = false;  // the stream has not ended
   int stop_requests_ = 0;

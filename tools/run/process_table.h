@@ -11,11 +11,11 @@ struct RunOptions {
   std::string out_dir;
   std::string record_dir;  // raw channels are recorded there; empty: nowhere
   bool record_all = false;
-  std::string pcap, log;  // in place of a sensor and a robot; empty: those
-  double rate = 1;        // of pcap and log
-  std::string spot_host;  // a Spot's address; empty: the configuration's, or none
-  std::string T_body_lidar = "0 0 0 0 0 0 1";
-  std::string odometry;  // mode; empty: fused if there is a robot or a log with odometry, else lidar
+  std::string pcap, log;     // in place of a sensor and a robot; empty: those
+  double rate = 1;           // of pcap and log
+  std::string spot_host;     // a Spot's address; empty: the configuration's, or none
+  std::string T_body_lidar;  // of a live sensor; empty: the configuration's
+  std::string odometry;      // mode; empty: fused if there is a robot or a log with odometry, else lidar
   std::string lcm_url;
   std::string config_file;
   std::vector<std::string> assignments;

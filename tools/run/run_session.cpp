@@ -5,7 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/bus/log_file.h"
-#include "drivers/recording/convert_recording.h"
+#include "drivers/session_source.h"
 #include "lcmtypes/convert/convert.h"
 #include "tools/system/stages.h"
 
@@ -30,10 +30,13 @@ Session sessionOf(const RunOptions& options, Time now) {
   if (!options.log.empty()) {
     session = sessionOfLog(options.log);
   } else {
-    session.id = now.us;
-    session.start = now;
+    SessionConfig config = options.config.drivers.session;
+    if (!options.T_body_lidar.empty()) config.T_body_lidar = options.T_body_lidar;
+    session = liveSession(config, "", "", now);
     session.has_odometry = !options.spot_host.empty();
-    session.T_body_lidar = parseTransform(options.T_body_lidar, "--T-body-lidar");
+    // Where there is a robot its odometry is used.
+    if (session.has_odometry && session.odometry_mode == toString(OdometryMode::kLidar))
+      session.odometry_mode.clear();
   }
   session.writer = "sgraphs run " SGRAPHS_VERSION;
   session.stages = allStages();

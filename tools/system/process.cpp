@@ -60,6 +60,8 @@ int failed(const std::string& name, const std::exception& e, int code) {
 }
 
 void addStageOptions(CLI::App& app, ProcessSetup& setup, int& threads, std::string& state_dir) {
+  app.add_option("--state-dir", state_dir,
+                 "Folder for the journal that this process resumes from when it was killed");
   app.add_option("--threads", threads, "Worker threads; the result does not depend on it")
       ->check(CLI::Range(1, 64));
   app.add_option("--odometry", setup.odometry, "lidar, encoder or fused in place of SESSION's choice");
@@ -67,10 +69,6 @@ void addStageOptions(CLI::App& app, ProcessSetup& setup, int& threads, std::stri
   app.add_option("--end-after-silence", setup.end_after_silence_s,
                  "End the stream after so many seconds without a message; 0: never")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--boot", setup.boot, "How often this process was restarted within the session")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--state-dir", state_dir,
-                 "Folder for the journal that this process resumes from when it was killed");
 }
 
 }  // namespace
@@ -89,6 +87,8 @@ int runProcess(const ProcessText& text, int argc, char** argv,
   app.add_option("--lcm-url", setup.lcm_url, "LCM provider; default: $LCM_DEFAULT_URL, else LCM's own");
   app.add_option("--config", config_file, "YAML file of settings");
   app.add_option("--set", assignments, "One setting, section.key=value; may be repeated");
+  app.add_option("--boot", setup.boot, "How often this process was restarted within the session")
+      ->check(CLI::NonNegativeNumber);
   std::string state_dir;
   if (text.stage) addStageOptions(app, setup, threads, state_dir);
   bool print_config = false;
