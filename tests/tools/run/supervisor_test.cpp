@@ -87,9 +87,8 @@ TEST_F(SupervisorTest, WhatEndsInOrderOrByItsCommandLineIsLeft) {
   dut.start(Role::kStage);
   dut.start(Role::kPlayer);
   ASSERT_TRUE(until(dut, [&] { return !dut.running(Role::kStage) && !dut.running(Role::kPlayer); }));
-  until(dut, [&] {
-    return said.find("player") != std::string::npos && said.find("usage") != std::string::npos;
-  });
+  until(dut,
+        [&] { return said.find("player") != std::string::npos && said.find("usage") != std::string::npos; });
   EXPECT_EQ(dut.restarts(), 0);
   EXPECT_EQ(dut.exitCode(Role::kStage), 3);
   EXPECT_NE(said.find("usage ended with code 2: unknown key"), std::string::npos) << said;
