@@ -19,6 +19,7 @@ using Role = ProcessRow::Role;
 TEST(RestartPolicyTest, WaitsTwiceAsLongEachTimeUpToTenSeconds) {
   RestartPolicy policy;
   std::vector<double> delays;
+  delays.reserve(9);
   for (int i = 0; i < 9; ++i) delays.push_back(policy.delayAfter(0.5));
   EXPECT_EQ(delays, (std::vector<double>{0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 10, 10}));
 }
