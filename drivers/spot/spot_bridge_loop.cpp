@@ -62,7 +62,7 @@ int runSpotBridge(const ProcessText& text, const ProcessSetup& setup, const Spot
                       Duration::fromSeconds(config.call_timeout_s));
   SpotBridge bridge(robot, config, credentials, steadyNow);
   LcmBus bus(setup.lcm_url);
-  SpotBridgeNode node(bus, bridge, session, options.boot, hostClock);
+  SpotBridgeNode node(bus, bridge, session, setup.boot, hostClock);
   StopSignals stop;
   node.everySecond();
   spdlog::info("listening");

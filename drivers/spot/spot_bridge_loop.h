@@ -10,7 +10,6 @@ namespace sgraphs {
 struct SpotBridgeOptions {
   std::string host, root_cert, credentials, frame;  // in place of the settings', where they are given
   bool own_session = false;
-  int64_t boot = 0;  // how often this process was restarted within the session
 };
 
 // Runs until a signal or the session's end; returns the exit code. Throws UsageError for what is missing,

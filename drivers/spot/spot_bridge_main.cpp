@@ -20,8 +20,6 @@ int main(int argc, char** argv) {
     app.add_option("--frame", options.frame, "odom (default) or vision");
     app.add_flag("--session", options.own_session,
                  "Publish SESSION, too, as drivers.session says; default: wait for one on the bus");
-    app.add_option("--boot", options.boot, "How often this process was restarted within the session")
-        ->check(CLI::NonNegativeNumber);
   };
   return runProcess(text, argc, argv,
                     [&](const ProcessSetup& setup) { return runSpotBridge(text, setup, options); });

@@ -17,7 +17,7 @@ using testing_support::solveBatch;
 using testing_support::Walk;
 using testing_support::WalkOptions;
 
-constexpr double kLoopCauchyScale = 4.1;  // as the backend's
+constexpr double kLoopCauchyScale = 10.0;  // as the backend's
 
 struct Tolerance {
   double m;
