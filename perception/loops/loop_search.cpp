@@ -64,39 +64,45 @@ bool apart(const SE3& a, const SE3& b) {
 
 }  // namespace
 
-LoopSearch::Anchors LoopSearch::anchorsOf(KeyframeId keyframe, const PlaceMemory& memory,
-                                          const WalkedPath& path) const {
+LoopSearch::OldPlaces LoopSearch::oldPlaces(KeyframeId keyframe, const PlaceMemory& memory,
+                                            const WalkedPath& path) const {
+  const FloorId floor = memory.poseOf(keyframe).floor;
+  OldPlaces old;
+  for (const auto& [id, place] : memory.places()) {
+    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
+    // Storeys look alike; only stairs lead from one to the other.
+    if (memory.known(id) && memory.poseOf(id).floor == floor)
+      old.push_back({id, &place, memory.poseOf(id).T_map_body});
+  }
+  return old;
+}
+
+LoopSearch::Anchors LoopSearch::anchorsOf(KeyframeId keyframe, const OldPlaces& old,
+                                          const PlaceMemory& memory, const WalkedPath& path) const {
   const MapKeyframe& here = memory.poseOf(keyframe);
   const WalkedPath::Gates gates = path.gatesFrom(keyframe);
   std::vector<Anchor> anchors;
-  for (const auto& [id, place] : memory.places()) {
-    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
-    if (!memory.known(id)) continue;
-    const MapKeyframe& there = memory.poseOf(id);
-    // Storeys look alike; only stairs lead from one to the other.
-    if (there.floor != here.floor) continue;
+  for (const OldPlace& there : old) {
     if (std::abs((there.T_map_body.translation - here.T_map_body.translation).z()) > config_.gate.height_m)
       continue;
-    const LoopGate gate = gates.at(id);
+    const LoopGate gate = gates.at(there.id);
     if (across(there.T_map_body.translation, here.T_map_body.translation) > gate.radius_m + kAnchorReach_m)
       continue;
-    anchors.push_back({id, there.T_map_body, gate});
+    anchors.push_back({there.id, there.T_map_body, gate});
   }
   return anchors;
 }
 
-OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, KeyframeId keyframe,
-                                           const PlaceMemory& memory, const WalkedPath& path) const {
+OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, const OldPlaces& old,
+                                           const WalkedPath& path) const {
   const SE3 T_anchor_map = anchor.T_map_body.inverse();
-  const MapKeyframe& centre = memory.poseOf(anchor.id);
   std::vector<PlacedPlace> places;
-  for (const auto& [id, place] : memory.places()) {
-    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
-    if (std::abs(path.walkedTo(id) - path.walkedTo(anchor.id)) > config_.verification.submap_path_m) continue;
-    if (!memory.known(id) || memory.poseOf(id).floor != centre.floor) continue;
-    const SE3 T_anchor_body = T_anchor_map * memory.poseOf(id).T_map_body;
+  for (const OldPlace& there : old) {
+    if (std::abs(path.walkedTo(there.id) - path.walkedTo(anchor.id)) > config_.verification.submap_path_m)
+      continue;
+    const SE3 T_anchor_body = T_anchor_map * there.T_map_body;
     if (T_anchor_body.translation.norm() > config_.verification.submap_radius_m) continue;
-    places.push_back({&place, T_anchor_body});
+    places.push_back({there.place, T_anchor_body});
   }
   std::stable_sort(places.begin(), places.end(), [](const PlacedPlace& a, const PlacedPlace& b) {
     return a.T_frame_body.translation.norm() < b.T_frame_body.translation.norm();
@@ -120,7 +126,8 @@ const LoopSearch::Anchor* LoopSearch::nearest(const Anchors& anchors, const Eige
 LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const {
   LoopVerdict verdict;
   verdict.keyframe = keyframe;
-  const std::vector<Anchor> anchors = anchorsOf(keyframe, memory, path);
+  const OldPlaces old = oldPlaces(keyframe, memory, path);
+  const Anchors anchors = anchorsOf(keyframe, old, memory, path);
   if (anchors.empty()) return verdict;
   const SE3 T_map_body = memory.poseOf(keyframe).T_map_body;
   LayoutSearch where;
@@ -132,15 +139,11 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
     where.yaw_range_rad = std::max(where.yaw_range_rad, a.gate.yaw_rad);
   }
   WallLayout layout(where.centre_map, where.radius_m + kQueryReach_m);
-  std::vector<PlacedPlace> old;
-  for (const auto& [id, place] : memory.places()) {
-    if (path.walkedTo(keyframe) - path.walkedTo(id) < config_.gate.min_walked_m) break;
-    if (!memory.known(id) || memory.poseOf(id).floor != memory.poseOf(keyframe).floor) continue;
-    const SE3& T = memory.poseOf(id).T_map_body;
-    if (across(T.translation, T_map_body.translation) < where.radius_m + 2 * kQueryReach_m)
-      old.push_back({&place, T});
-  }
-  for (const WallPoint& w : wallsOf(old)) layout.add(w);
+  std::vector<PlacedPlace> around_here;
+  for (const OldPlace& there : old)
+    if (across(there.T_map_body.translation, T_map_body.translation) < where.radius_m + 2 * kQueryReach_m)
+      around_here.push_back({there.place, there.T_map_body});
+  for (const WallPoint& w : wallsOf(around_here)) layout.add(w);
 
   const std::vector<PlacedPlace> query = queryOf(keyframe, memory, path, config_.verification.query_path_m);
   std::map<KeyframeId, OldSurroundings> surroundings;
@@ -151,7 +154,7 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
       continue;
     auto it = surroundings.find(anchor->id);
     if (it == surroundings.end())
-      it = surroundings.emplace(anchor->id, surroundingsOf(*anchor, keyframe, memory, path)).first;
+      it = surroundings.emplace(anchor->id, surroundingsOf(*anchor, old, path)).first;
     // A body is carried at one height above the floor.
     const SE3 T_map_guess(
         so3Exp({0, 0, match.yaw_rad}) * T_map_body.rotation,
@@ -181,7 +184,7 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
   verdict.hypotheses = std::move(kept);
   if (!verdict.hypotheses.empty() && verdict.hypotheses.front().correction_m > kApart_m) {
     if (const Anchor* anchor = nearest(anchors, where.centre_map, kSeenFrom_m)) {
-      const OldSurroundings around = surroundingsOf(*anchor, keyframe, memory, path);
+      const OldSurroundings around = surroundingsOf(*anchor, old, path);
       const LoopCheck stays =
           checkLoop(query, around, anchor->T_map_body.inverse() * T_map_body, config_.verification);
       verdict.map_refuted = stays.refuted(config_.verification);

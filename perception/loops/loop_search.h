@@ -36,6 +36,13 @@ class LoopSearch {
   LoopVerdict step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
 
  private:
+  // A remembered place on the keyframe's storey, walked past long enough ago.
+  struct OldPlace {
+    KeyframeId id;
+    const Place* place;
+    SE3 T_map_body;
+  };
+  using OldPlaces = std::vector<OldPlace>;
   struct Anchor {
     KeyframeId id;
     SE3 T_map_body;
@@ -43,9 +50,10 @@ class LoopSearch {
   };
   using Anchors = std::vector<Anchor>;
   static const Anchor* nearest(const Anchors& anchors, const Eigen::Vector2d& position_map, double within_m);
-  Anchors anchorsOf(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
-  OldSurroundings surroundingsOf(const Anchor& anchor, KeyframeId keyframe, const PlaceMemory& memory,
-                                 const WalkedPath& path) const;
+  OldPlaces oldPlaces(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
+  Anchors anchorsOf(KeyframeId keyframe, const OldPlaces& old, const PlaceMemory& memory,
+                    const WalkedPath& path) const;
+  OldSurroundings surroundingsOf(const Anchor& anchor, const OldPlaces& old, const WalkedPath& path) const;
 
   LoopsConfig config_;
 };
