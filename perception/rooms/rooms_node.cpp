@@ -25,14 +25,8 @@ RoomsNode::RoomsNode(Bus& bus, Step step) : io_(bus, "rooms", "sgraphs-rooms"), 
 }
 
 void RoomsNode::onGraphUpdate(const graph_update_t& m) {
-  if (!io_.accept(channels::kGraphUpdate, m) || !io_.takesPart()) return;
-  bool refused = false;
-  const auto chunks = updates_assembly_.add(m, refused);
-  if (refused)
-    return io_.reject(channels::kGraphUpdate, "a round that cannot be, or chunks that do not match");
-  if (!chunks) return;
-  std::optional<MapUpdate> update = fromMessages(*chunks);
-  if (!update) return io_.reject(channels::kGraphUpdate, "content that cannot be right");
+  std::optional<MapUpdate> update = map_updates_.add(m);
+  if (!update) return;
   updates_.push_back(std::move(*update));
   advance();
 }

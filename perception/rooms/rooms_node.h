@@ -11,6 +11,7 @@
 #include "common/types/map_update.h"
 #include "common/types/rooms.h"
 #include "lcmtypes/convert/chunks.h"
+#include "perception/stage/map_update_input.h"
 #include "perception/stage/stage_io.h"
 
 namespace sgraphs {
@@ -42,7 +43,7 @@ class RoomsNode {
 
   StageIo io_;
   Step step_;
-  RoundAssembly<graph_update_t> updates_assembly_;
+  MapUpdateInput map_updates_{io_};
   RoundAssembly<free_space_t> free_space_assembly_;
   std::deque<MapUpdate> updates_;                          // not yet worked on
   std::deque<std::vector<free_space_t>> free_space_held_;  // of rounds whose GRAPH_UPDATE has not come

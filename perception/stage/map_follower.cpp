@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "lcmtypes/convert/convert_layers.h"
-
 namespace sgraphs {
 
 MapFollower::MapFollower(StageIo& io, Work work) : io_(io), work_(std::move(work)) {
@@ -39,14 +37,8 @@ void MapFollower::onKeyframe(const keyframe_t& m) {
 }
 
 void MapFollower::onGraphUpdate(const graph_update_t& m) {
-  if (!io_.accept(channels::kGraphUpdate, m) || !io_.takesPart()) return;
-  bool refused = false;
-  const auto chunks = updates_assembly_.add(m, refused);
-  if (refused)
-    return io_.reject(channels::kGraphUpdate, "a round that cannot be, or chunks that do not match");
-  if (!chunks) return;
-  std::optional<MapUpdate> update = fromMessages(*chunks);
-  if (!update) return io_.reject(channels::kGraphUpdate, "content that cannot be right");
+  std::optional<MapUpdate> update = map_updates_.add(m);
+  if (!update) return;
   updates_.push_back(std::move(*update));
   advance();
 }

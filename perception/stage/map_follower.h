@@ -8,8 +8,8 @@
 
 #include "common/types/keyframe.h"
 #include "common/types/map_update.h"
-#include "lcmtypes/convert/chunks.h"
 #include "lcmtypes/convert/keyframe_assembly.h"
+#include "perception/stage/map_update_input.h"
 #include "perception/stage/stage_io.h"
 
 namespace sgraphs {
@@ -39,7 +39,7 @@ class MapFollower {
   StageIo& io_;
   Work work_;
   KeyframeAssembly assembly_;
-  RoundAssembly<graph_update_t> updates_assembly_;
+  MapUpdateInput map_updates_{io_};
   std::set<int64_t> complete_;  // keyframes whose chunks have all come
   int64_t announced_ = -1;      // newest keyframe heard of
   bool keyframes_ended_ = false;
