@@ -23,7 +23,6 @@ struct Ray {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
   bool ends_here = false;  // the return lies in the band
-  uint8_t scan = 0;        // of its keyframe: rays of one scan share a viewpoint
 };
 
 // The part of the ray inside the band, seen from above.
@@ -41,7 +40,7 @@ std::optional<Ray> clipToBand(const StoreyHeight& height, const Eigen::Vector3d&
   if (begin >= end) return std::nullopt;
   const Eigen::Vector2d direction = (point - viewpoint).head<2>();
   const Eigen::Vector2d origin = viewpoint.head<2>();
-  return Ray{origin + begin * direction, origin + end * direction, end == 1, 0};
+  return Ray{origin + begin * direction, origin + end * direction, end == 1};
 }
 
 std::vector<Ray> raysOf(const KeyframeNode& node, const StoreyHeight& height) {
@@ -54,10 +53,7 @@ std::vector<Ray> raysOf(const KeyframeNode& node, const StoreyHeight& height) {
   for (const KeyframePoint& point : node.keyframe->points) {
     if (point.scan >= viewpoints.size()) continue;
     const Eigen::Vector3d p = rotation * point.position_body.cast<double>() + node.T_map_body.translation;
-    if (const auto ray = clipToBand(height, viewpoints[point.scan], p)) {
-      rays.push_back(*ray);
-      rays.back().scan = point.scan;
-    }
+    if (const auto ray = clipToBand(height, viewpoints[point.scan], p)) rays.push_back(*ray);
   }
   return rays;
 }
@@ -111,11 +107,12 @@ class GridBuilder {
     log_odds_[i] = std::clamp(log_odds_[i] + change, kMin, kMax);
   }
 
-  // Points above one another on a wall: their rays cross the same cells, one of them is enough.
+  // Points above one another on a wall, or seen again by the keyframe's next scan some centimetres on: their
+  // rays cross nearly the same cells, one of them is enough.
   bool isFirst(const Ray& ray) {
     const Eigen::Vector2i cell = cellOf(ray.to);
     int64_t& last = cleared_[static_cast<size_t>(cell.y()) * grid_.width + cell.x()];
-    const int64_t now = (int64_t{keyframe_} * 256 + ray.scan) * 2 + ray.ends_here;
+    const int64_t now = int64_t{keyframe_} * 2 + ray.ends_here;
     if (last == now) return false;
     last = now;
     return true;
@@ -149,7 +146,7 @@ class GridBuilder {
   std::vector<float> log_odds_;
   std::vector<uint8_t> seen_;
   std::vector<int32_t> touched_;  // by which keyframe last
-  std::vector<int64_t> cleared_;  // up to here, by which scan last
+  std::vector<int64_t> cleared_;  // up to here, by which keyframe last
   int32_t keyframe_ = 0;
 };
 
