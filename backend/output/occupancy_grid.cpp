@@ -18,6 +18,7 @@ constexpr float kPass = -0.4f;
 constexpr float kMin = -2.0f;
 constexpr float kMax = 3.5f;
 constexpr int kMaxCells = 100'000'000;
+constexpr int kBeaten = 20;  // cells: 1 m
 
 struct Ray {
   Eigen::Vector2d from;
@@ -69,15 +70,11 @@ class GridBuilder {
     if (size.x() * size.y() > kMaxCells) return;  // an outlier kilometres away: no grid rather than no memory
     grid_.width = static_cast<int>(size.x());
     grid_.height = static_cast<int>(size.y());
-    const size_t cells = static_cast<size_t>(grid_.width) * grid_.height;
-    log_odds_.assign(cells, 0);
-    seen_.assign(cells, 0);
-    touched_.assign(cells, 0);
-    cleared_.assign(cells, 0);
+    cells_.assign(static_cast<size_t>(grid_.width) * grid_.height, {});
   }
 
   void add(const std::vector<Ray>& rays) {
-    if (log_odds_.empty()) return;
+    if (cells_.empty()) return;
     ++keyframe_;
     for (const Ray& ray : rays)
       if (ray.ends_here) update(cellOf(ray.to), kHit);
@@ -86,67 +83,75 @@ class GridBuilder {
   }
 
   OccupancyGrid finish() {
-    grid_.cells.assign(log_odds_.size(), Occupancy::kUnknown);
-    for (size_t i = 0; i < log_odds_.size(); ++i)
-      if (seen_[i]) grid_.cells[i] = log_odds_[i] > 0 ? Occupancy::kOccupied : Occupancy::kFree;
+    grid_.cells.assign(cells_.size(), Occupancy::kUnknown);
+    for (size_t i = 0; i < cells_.size(); ++i)
+      if (cells_[i].touched > 0)
+        grid_.cells[i] = cells_[i].log_odds > 0 ? Occupancy::kOccupied : Occupancy::kFree;
     return std::move(grid_);
   }
 
  private:
+  struct Cell {
+    float log_odds = 0;
+    int32_t touched = 0;  // by which keyframe last, counted from 1
+    int32_t cleared = 0;  // up to here, by which keyframe's ray last, and whether it ended here
+  };
+
   Eigen::Vector2i cellOf(const Eigen::Vector2d& p) const {
     const Eigen::Vector2d cell = (p - grid_.origin_map) / grid_.resolution_m;
     return cell.array().floor().cast<int>();
   }
+  Cell& at(const Eigen::Vector2i& cell) {
+    return cells_[static_cast<size_t>(cell.y()) * grid_.width + cell.x()];
+  }
 
-  // At most once per keyframe and cell; hits come first and win.
-  void update(const Eigen::Vector2i& cell, float change) {
-    const size_t i = static_cast<size_t>(cell.y()) * grid_.width + cell.x();
-    if (touched_[i] == keyframe_) return;
-    touched_[i] = keyframe_;
-    seen_[i] = 1;
-    log_odds_[i] = std::clamp(log_odds_[i] + change, kMin, kMax);
+  // At most once per keyframe and cell; hits come first and win. False: this keyframe was here before.
+  bool update(const Eigen::Vector2i& place, float change) {
+    Cell& cell = at(place);
+    if (cell.touched == keyframe_) return false;
+    cell.touched = keyframe_;
+    cell.log_odds = std::clamp(cell.log_odds + change, kMin, kMax);
+    return true;
   }
 
   // Points above one another on a wall, or seen again by the keyframe's next scan some centimetres on: their
   // rays cross nearly the same cells, one of them is enough.
   bool isFirst(const Ray& ray) {
-    const Eigen::Vector2i cell = cellOf(ray.to);
-    int64_t& last = cleared_[static_cast<size_t>(cell.y()) * grid_.width + cell.x()];
-    const int64_t now = int64_t{keyframe_} * 2 + ray.ends_here;
+    int32_t& last = at(cellOf(ray.to)).cleared;
+    const int32_t now = keyframe_ * 2 + ray.ends_here;
     if (last == now) return false;
     last = now;
     return true;
   }
 
   // Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing": every cell between the ends,
-  // without the last one if the return is in it.
+  // without the last one if the return is in it. From the far end: rays run together towards the sensor, and
+  // where the keyframe has cleared kBeaten cells in a row already it has cleared the rest, too.
   void clear(const Ray& ray) {
-    Eigen::Vector2i cell = cellOf(ray.from);
-    const Eigen::Vector2i last = cellOf(ray.to);
-    const Eigen::Vector2d direction = ray.to - ray.from;
+    Eigen::Vector2i cell = cellOf(ray.to);
+    const Eigen::Vector2i last = cellOf(ray.from);
+    const Eigen::Vector2d direction = ray.from - ray.to;
     Eigen::Vector2d next, step_length;
     Eigen::Vector2i step;
     for (int k = 0; k < 2; ++k) {
       step[k] = direction[k] > 0 ? 1 : -1;
       const double border = grid_.origin_map[k] + (cell[k] + (direction[k] > 0 ? 1 : 0)) * grid_.resolution_m;
       step_length[k] = direction[k] != 0 ? grid_.resolution_m / std::abs(direction[k]) : 1e300;
-      next[k] = direction[k] != 0 ? (border - ray.from[k]) / direction[k] : 1e300;
+      next[k] = direction[k] != 0 ? (border - ray.to[k]) / direction[k] : 1e300;
     }
-    for (int left = (last - cell).cwiseAbs().sum(); left > 0; --left) {
-      update(cell, kPass);
+    if (!ray.ends_here) update(cell, kPass);
+    int beaten = 0;
+    for (int left = (last - cell).cwiseAbs().sum(); left > 0 && beaten < kBeaten; --left) {
       const int k = next.x() < next.y() ? 0 : 1;
       cell[k] += step[k];
       next[k] += step_length[k];
       if (cell.x() < 0 || cell.y() < 0 || cell.x() >= grid_.width || cell.y() >= grid_.height) return;
+      beaten = update(cell, kPass) ? 0 : beaten + 1;
     }
-    if (!ray.ends_here) update(cell, kPass);
   }
 
   OccupancyGrid grid_;
-  std::vector<float> log_odds_;
-  std::vector<uint8_t> seen_;
-  std::vector<int32_t> touched_;  // by which keyframe last
-  std::vector<int64_t> cleared_;  // up to here, by which keyframe last
+  std::vector<Cell> cells_;
   int32_t keyframe_ = 0;
 };
 
