@@ -123,7 +123,7 @@ void SituationalGraph::check() const {
       broken("factor " + std::to_string(factor.id) + " is not finite");
   }
   for (const auto& [id, loop] : loops) {
-    const auto isOf = [&](const RelativePoseFactor& f) { return f.id == loop.factor; };
+    const auto isOf = [factor = loop.factor](const RelativePoseFactor& f) { return f.id == factor; };
     if (loop.active() && std::none_of(relative_poses.begin(), relative_poses.end(), isOf))
       broken("loop " + id.str() + " is active without a factor");
   }

@@ -40,10 +40,15 @@ struct Channel {
 };
 
 template <typename Message>
-void publish(Bus& bus, const Channel<Message>& channel, const Message& message) {
+std::vector<uint8_t> encoded(const Message& message) {
   std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
   message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  bus.publish(channel.name, bytes);
+  return bytes;
+}
+
+template <typename Message>
+void publish(Bus& bus, const Channel<Message>& channel, const Message& message) {
+  bus.publish(channel.name, encoded(message));
 }
 
 // Decodes one message; false if the bytes are not a message of this type, or hold more than one.

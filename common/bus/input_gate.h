@@ -38,6 +38,9 @@ class InputGate {
   void setSession(int64_t session) { session_ = session; }
   int64_t session() const { return session_; }  // 0: none yet
 
+  // See StateArchive.
+  void visitState(auto& archive) { archive(session_, counts_, boot_, reasons_); }
+
   const std::map<std::string, ChannelCount>& counts() const { return counts_; }
 
   // "2 messages of SPOT_ODOMETRY lost; 1 message of KEYFRAME rejected (…)"; empty if nothing was lost or

@@ -16,8 +16,8 @@ namespace {
 constexpr char kMagic[] = "SGJRNL01";
 constexpr size_t kMagicBytes = sizeof kMagic - 1;
 constexpr size_t kHeadBytes = 4 + 2 + 4;
-// Longer than any message of ours; a length beyond it is no length.
-constexpr uint32_t kMaxBytes = 16u << 20;
+// Longer than any message or checkpoint of ours; a length beyond it is no length.
+constexpr uint32_t kMaxBytes = 256u << 20;
 
 void put(std::vector<uint8_t>& out, uint32_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out.push_back(static_cast<uint8_t>(value >> (8 * i)));
@@ -78,7 +78,7 @@ std::optional<JournalRecord> JournalReader::next() {
   return JournalRecord{{body, body + name_length}, {body + name_length, body + name_length + length}};
 }
 
-JournalWriter::JournalWriter(const std::string& path, int64_t good_bytes) : path_(path) {
+JournalWriter::JournalWriter(const std::string& path, int64_t good_bytes) : path_(path), bytes_(good_bytes) {
   file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (file_ < 0 || ftruncate(file_, good_bytes) != 0 ||
       (good_bytes == 0 && write(file_, kMagic, kMagicBytes) != static_cast<ssize_t>(kMagicBytes)))
@@ -101,6 +101,13 @@ void JournalWriter::append(const std::string& name, Bus::Bytes bytes) {
   for (int i = 0; i < 4; ++i) record[static_cast<size_t>(i)] = static_cast<uint8_t>(crc >> (8 * i));
   if (write(file_, record.data(), record.size()) != static_cast<ssize_t>(record.size()))
     throw Error("cannot write journal '" + path_ + "': " + std::strerror(errno) + "; make room on the disk");
+  bytes_ += static_cast<int64_t>(record.size());
+}
+
+void JournalWriter::moveTo(const std::string& path) {
+  if (std::rename(path_.c_str(), path.c_str()) != 0)
+    throw Error("cannot write journal '" + path + "': " + std::strerror(errno));
+  path_ = path;
 }
 
 }  // namespace sgraphs

@@ -51,9 +51,13 @@ class JournalWriter {
 
   // Throws Error if the disk refuses it.
   void append(const std::string& name, Bus::Bytes bytes);
+  // The file takes the place of another. Throws Error if it cannot.
+  void moveTo(const std::string& path);
+  int64_t bytes() const { return bytes_; }  // of the file
 
  private:
   std::string path_;
+  int64_t bytes_ = 0;
   int file_ = -1;
 };
 

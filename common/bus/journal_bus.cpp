@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/base/state_archive.h"
 #include "common/bus/channels.h"
 
 namespace sgraphs {
@@ -14,6 +15,7 @@ namespace {
 
 // Names of notes begin with what no channel's name does.
 constexpr const char* kBoot = "!boot";
+constexpr const char* kCheckpoint = "!checkpoint";
 
 std::string noteName(const std::string& name) {
   return "!" + name;
@@ -53,6 +55,48 @@ void JournalBus::hear(const std::string& name, Bytes bytes) {
     }
   }
   handle(name, bytes);
+  if (journal_ && checkpoint_bytes_ > 0 && journal_->bytes() >= next_checkpoint_) writeCheckpoint();
+}
+
+void JournalBus::keepCheckpoints(int64_t every_bytes,
+                                 std::function<std::optional<std::vector<uint8_t>>()> save,
+                                 std::function<void(Bytes)> restore) {
+  checkpoint_bytes_ = next_checkpoint_ = every_bytes;
+  save_ = std::move(save);
+  restore_ = std::move(restore);
+}
+
+// The new journal takes the old one's place when it is whole: killed in between, the old one counts.
+void JournalBus::writeCheckpoint() {
+  const std::optional<std::vector<uint8_t>> state = save_();
+  if (!state) return;
+  StateArchive archive;
+  archive(session_);
+  std::vector<uint8_t> bytes = archive.takeBytes();
+  bytes.insert(bytes.end(), state->begin(), state->end());
+  try {
+    auto fresh = std::make_unique<JournalWriter>(path_ + ".new", 0);
+    for (int64_t i = 0; i <= boot_; ++i) fresh->append(kBoot, {});
+    fresh->append(kCheckpoint, bytes);
+    fresh->moveTo(path_);
+    journal_ = std::move(fresh);
+  } catch (const Error& e) {
+    spdlog::warn("{}; the journal goes on without a checkpoint", e.what());
+  }
+  next_checkpoint_ = journal_->bytes() + checkpoint_bytes_;
+}
+
+void JournalBus::restoreCheckpoint(Bytes bytes) {
+  try {
+    if (!restore_) throw Error("this program keeps no checkpoints");
+    StateArchive archive(bytes);
+    archive(session_);
+    restore_(bytes.subspan(sizeof session_));
+  } catch (const Error& e) {
+    const std::string why = e.what();
+    forget();
+    throw Error("journal '" + path_ + "': " + why + ": this process ends, and is to be started anew");
+  }
 }
 
 void JournalBus::handle(const std::string& name, Bytes bytes) {
@@ -79,17 +123,28 @@ int64_t JournalBus::resume() {
   // memory.
   int64_t messages = 0, boots = 0;
   JournalReader counter(path_);
-  while (const auto record = counter.next()) ++(record->name == kBoot ? boots : messages);
+  bool has_checkpoint = false;
+  while (const auto record = counter.next()) {
+    if (record->name == kCheckpoint)
+      has_checkpoint = true;
+    else
+      ++(record->name == kBoot ? boots : messages);
+  }
   if (counter.bytesLeft() > 0)
     spdlog::warn("journal '{}': its last {} bytes are not whole and are left out", path_,
                  counter.bytesLeft());
   const int64_t boot = std::max(boot_, boots);
   boot_ = std::max<int64_t>(boots - 1, 0);
   JournalReader reader(path_);
-  for (int64_t left = messages; left > 0;) {
+  for (int64_t left = messages; left > 0 || has_checkpoint;) {
     const std::optional<JournalRecord> record = reader.next();
     if (!record) throw Error("journal '" + path_ + "' changes while it is read: two processes of one kind?");
     if (record->name == kBoot) continue;
+    if (record->name == kCheckpoint) {
+      has_checkpoint = false;
+      restoreCheckpoint(record->bytes);
+      continue;
+    }
     muted_ = --left > 0;
     if (record->name == channels::kSession.name) refuseOtherSession(record->bytes);
     handle(record->name, record->bytes);
@@ -98,6 +153,7 @@ int64_t JournalBus::resume() {
   boot_ = boot;
   journal_ = std::make_unique<JournalWriter>(path_, counter.goodBytes());
   journal_->append(kBoot, {});
+  next_checkpoint_ = journal_->bytes() + checkpoint_bytes_;
   return messages;
 }
 

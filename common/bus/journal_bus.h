@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ class JournalBus : public Bus {
   void onNote(const std::string& name, std::function<void()> decide);
   void note(const std::string& name);
 
+  // Lets the journal begin anew with the reader's own state whenever it has grown by `every_bytes`, so that
+  // coming back takes no longer after hours than after seconds. `save` gives nothing while that cannot be;
+  // `restore` throws Error for a state that is not this program's.
+  void keepCheckpoints(int64_t every_bytes, std::function<std::optional<std::vector<uint8_t>>()> save,
+                       std::function<void(Bytes)> restore);
+
   // To be called once, when all handlers are there. Returns the number of messages read from the journal. A
   // journal of which the end is not whole is used up to there. Throws Error if the journal cannot be read or
   // written.
@@ -46,11 +53,17 @@ class JournalBus : public Bus {
   void hear(const std::string& name, Bytes bytes);
   void handle(const std::string& name, Bytes bytes);
   void refuseOtherSession(Bytes session_message);
+  void writeCheckpoint();
+  void restoreCheckpoint(Bytes bytes);
 
   Bus& inner_;
   std::string path_;
   std::unique_ptr<JournalWriter> journal_;
   std::map<std::string, Line> lines_;
+  int64_t checkpoint_bytes_ = 0;  // 0: none are kept
+  int64_t next_checkpoint_ = 0;   // size of the journal that asks for the next
+  std::function<std::optional<std::vector<uint8_t>>()> save_;
+  std::function<void(Bytes)> restore_;
   int64_t boot_;
   int64_t session_ = 0;  // that the journal is of; 0: none yet
   bool muted_ = false;

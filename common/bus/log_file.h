@@ -71,9 +71,7 @@ class LogWriter {
 
 template <typename Message>
 void write(LogWriter& log, int64_t timestamp_us, const Channel<Message>& channel, const Message& message) {
-  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  log.write(timestamp_us, channel.name, bytes);
+  log.write(timestamp_us, channel.name, encoded(message));
 }
 
 // A log as a bus: dispatch() delivers one event; publish() appends to a second log, if one is given.

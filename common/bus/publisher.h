@@ -41,6 +41,9 @@ class Publisher {
   const std::map<std::string, int64_t>& lastSeq() const { return last_seq_; }
   int64_t lastSeq(const std::string& channel) const;
 
+  // See StateArchive.
+  void visitState(auto& archive) { archive(session_, last_seq_); }
+
   // Adds a channel and its newest number to a stream's end.
   void addTo(stream_end_t& end, const std::string& channel) const;
 

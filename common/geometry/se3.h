@@ -27,6 +27,7 @@ struct SE3 {
     return {q, -(q * translation)};
   }
   Eigen::Matrix3d matrix3() const { return rotation.toRotationMatrix(); }
+  void visitState(auto& archive) { archive(rotation, translation); }
   bool isFinite() const { return rotation.coeffs().allFinite() && translation.allFinite(); }
 };
 

@@ -15,6 +15,8 @@ struct LidarPoint {
   uint16_t column = 0;       // index of the firing sequence within the scan; 0 if the LiDAR has none
   uint8_t ring = 0;          // bottom to top; 0 if the LiDAR has none
   uint8_t reflectivity = 0;  // 0-100 diffuse, 101-255 retro-reflective (VLP-16 manual)
+
+  void visitState(auto& archive) { archive(position_lidar, time_us, column, ring, reflectivity); }
 };
 
 // One revolution (or sweep) in firing order. Its time is its end: the last firing.
@@ -25,6 +27,8 @@ struct LidarScan {
   uint16_t num_rings = 0;          // 16 for a VLP-16; 0: unorganised, ring and column mean nothing
   bool deskewed = false;           // true: the points are already at the scan's end (no firing times)
   std::vector<LidarPoint> points;  // returns only; zero ranges are dropped by the decoder
+
+  void visitState(auto& archive) { archive(begin, end, sequence, num_rings, deskewed, points); }
 };
 
 }  // namespace sgraphs

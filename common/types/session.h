@@ -34,6 +34,8 @@ struct Session {
 struct BodyOdometry {
   Time time;
   SE3 T_odom_body;
+
+  void visitState(auto& archive) { archive(time, T_odom_body); }
 };
 
 }  // namespace sgraphs

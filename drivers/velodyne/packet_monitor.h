@@ -24,6 +24,8 @@ class PacketMonitor {
   Verdict step(Time first_firing, const Vlp16Packet& packet);
 
   int64_t lost() const { return lost_; }
+  void visitState(auto& archive) { archive(previous_, previous_period_us_, lost_, foreign_in_a_row_); }
+
   // Recognised as a 32-beam sensor; every packet is refused from then on.
   bool thirtyTwoBeams() const { return foreign_in_a_row_ >= kForeignSteps; }
 

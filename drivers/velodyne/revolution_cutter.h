@@ -15,6 +15,8 @@ class RevolutionCutter {
   // none.
   int step(std::span<const uint8_t> packet);
 
+  void visitState(auto& archive) { archive(has_previous_, previous_deg_); }
+
  private:
   double cut_azimuth_deg_;
   bool has_previous_ = false;

@@ -43,6 +43,12 @@ class RevolutionAssembler {
   // Packets known to be missing in the revolution delivered last, or at its cuts.
   int64_t lostInLastRevolution() const { return lost_in_last_; }
 
+  // All but the configuration; see StateArchive.
+  void visitState(auto& archive) {
+    archive(cutter_, monitor_, counts_, previous_packet_, rate_cdeg_per_us_, begun_, empty_, open_,
+            lost_in_open_, lost_in_last_, next_sequence_);
+  }
+
  private:
   struct BlockTiming;
   void addBlocks(Time first_firing, const Vlp16Packet& packet, int begin, int end);

@@ -47,6 +47,11 @@ class ClockOffset {
   // right must stay as it is; later it follows an estimate that has moved by more than its error.
   Duration inForce() const { return in_force_; }
 
+  // All but the configuration; see StateArchive.
+  void visitState(auto& archive) {
+    archive(lags_, lidar_lidar_, used_, legs_, newest_legs_, pending_, previous_scan_, in_force_);
+  }
+
  private:
   struct Turn {
     Time time;

@@ -26,12 +26,19 @@ class KeyframeBuilder {
   // one. The patches of the same scans, in the keyframe's body, go to `surfels`.
   Keyframe build(const SE3& T_odom_body, std::vector<Surfel>& surfels);
 
+  // All but the configuration; see StateArchive.
+  void visitState(auto& archive) {
+    archive(has_keyframe_, T_odom_keyframe_, T_odom_scan_, voxels_, index_, surfels_odom_);
+  }
+
  private:
   struct Voxel {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // of positions in odom, relative to the voxel's corner
     Eigen::Vector3f corner = Eigen::Vector3f::Zero();
     uint32_t count = 0;
     uint8_t scan = 0;
+
+    void visitState(auto& archive) { archive(sum, corner, count, scan); }
   };
   bool adds(const SE3& T_odom_body) const;
   void addPoint(const Eigen::Vector3d& point_odom, const Eigen::Vector3d& viewpoint_odom, uint8_t scan);

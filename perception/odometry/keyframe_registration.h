@@ -22,12 +22,17 @@ class KeyframeRegistration {
   std::vector<RelativePose> step(KeyframeId id, const SE3& T_odom_body, const std::vector<Surfel>& surfels,
                                  const Matrix6d& anchor_covariance, int threads);
 
+  // All but the configuration; see StateArchive.
+  void visitState(auto& archive) { archive(references_); }
+
  private:
   struct Reference {
     KeyframeId id;
     SE3 T_odom_body;
     Matrix6d anchor_covariance;
     SurfelMap map;
+
+    void visitState(auto& archive) { archive(id, T_odom_body, anchor_covariance, map); }
   };
   RegistrationConfig registration_;
   CovarianceConfig covariance_;

@@ -68,6 +68,13 @@ class Odometry::Impl {
     return output;
   }
 
+  void visitState(StateArchive& archive) {
+    archive(map_, builder_, neighbours_, has_previous_, has_twist_, previous_pose_, legs_at_previous_end_,
+            previous_end_, gap_, previous_twist_, height_m_, registered_covariance_,
+            previous_registered_covariance_, keyframe_covariance_, edge_covariance_, T_odom_keyframe_,
+            all_registered_, failures_, next_scan_, next_keyframe_, last_keyframe_scan_);
+  }
+
  private:
   std::optional<OdometryOutput> stepInArena(const LidarScan& scan, std::span<const BodyOdometry> legs) {
     // Twists over times that run backwards would throw the robot anywhere.
@@ -322,6 +329,10 @@ class Odometry::Impl {
 Odometry::Odometry(const OdometryConfig& config, OdometryMode mode, const SE3& T_body_lidar)
     : impl_(std::make_unique<Impl>(config, mode, T_body_lidar)) {}
 Odometry::~Odometry() = default;
+
+void Odometry::visitState(StateArchive& archive) {
+  impl_->visitState(archive);
+}
 
 std::optional<OdometryOutput> Odometry::step(const LidarScan& scan,
                                              std::span<const BodyOdometry> body_odometry) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "common/base/state_archive.h"
 #include "common/types/keyframe.h"
 #include "common/types/lidar_scan.h"
 #include "common/types/session.h"
@@ -28,6 +29,9 @@ class Odometry {
   // returned for a scan that cannot be used (fewer than the configured number of points): the caller counts
   // it.
   std::optional<OdometryOutput> step(const LidarScan& scan, std::span<const BodyOdometry> body_odometry);
+
+  // All that it knows of its inputs so far; not the configuration, mode and mount.
+  void visitState(StateArchive& archive);
 
  private:
   class Impl;

@@ -15,6 +15,8 @@ namespace {
 constexpr Duration kMaxTimeJump{3'600'000'000};
 // A sweep in more chunks than this is no sweep (2800 points each).
 constexpr int kMaxSweepChunks = 1000;
+// To be raised with every change of what visitState() lists, anywhere.
+constexpr int32_t kStateVersion = 1;
 
 }  // namespace
 
@@ -45,11 +47,16 @@ void OdometryNode::onSession(const session_t& m) {
     return gate_.reject(channel, "no session id, another schema, or content that cannot be right");
   if (!gate_.accept(channel, m.header)) return;
   if (!odometry_override_.empty()) session->odometry_mode = odometry_override_;
-  mode_ = session->odometryMode();
-  if (mode_ != OdometryMode::kLidar && !session->has_odometry)
-    throw Error("odometry mode '" + toString(mode_) +
+  if (session->odometryMode() != OdometryMode::kLidar && !session->has_odometry)
+    throw Error("odometry mode '" + toString(session->odometryMode()) +
                 "' needs SPOT_ODOMETRY, which this recording does not carry: use --odometry lidar");
+  begin(m, std::move(*session));
+}
+
+void OdometryNode::begin(const session_t& m, Session session) {
+  session_message_ = m;
   session_ = std::move(session);
+  mode_ = session_->odometryMode();
   publisher_.setSession(session_->id);
   first_time_ = newest_time_ = session_->start;
   queue_ = ScanQueue(mode_ != OdometryMode::kLidar);
@@ -57,6 +64,26 @@ void OdometryNode::onSession(const session_t& m) {
   if (mode_ == OdometryMode::kFused) clock_.emplace(parts_.clock);
   decode_ = parts_.make_decoder();
   step_ = parts_.make_step(mode_, session_->T_body_lidar);
+}
+
+void OdometryNode::visitState(StateArchive& archive) {
+  int32_t version = kStateVersion;
+  archive(version);
+  if (version != kStateVersion) throw Error("a checkpoint of version " + std::to_string(version));
+  std::vector<uint8_t> message;
+  if (!archive.reading()) message = encoded(*session_message_);
+  archive(message);
+  if (archive.reading()) {
+    session_t m{};
+    std::optional<Session> session;
+    if (decode(message, m)) session = fromMessage(m);
+    if (!session) throw Error("a checkpoint whose SESSION cannot be read");
+    if (!odometry_override_.empty()) session->odometry_mode = odometry_override_;
+    begin(m, std::move(*session));
+  }
+  parts_.visit_state(archive);
+  if (clock_) archive(*clock_);
+  archive(publisher_, gate_, queue_, first_time_, newest_time_, newest_packet_, scans_, oddities_);
 }
 
 bool OdometryNode::enter(const std::string& channel, const header_t& header) {

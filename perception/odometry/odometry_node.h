@@ -26,6 +26,8 @@ struct OdometryParts {
   using Step = std::function<std::optional<OdometryOutput>(const LidarScan&, std::span<const BodyOdometry>)>;
   std::function<Decode()> make_decoder;
   std::function<Step(OdometryMode, const SE3& T_body_lidar)> make_step;
+  // State of the decoder and the step that were made last; empty: it cannot be saved.
+  std::function<void(StateArchive&)> visit_state;
   ClockOffsetConfig clock;
 };
 
@@ -43,6 +45,12 @@ class OdometryNode {
   // Ends a stream that has no STREAM_END: works off what is held and publishes ODOMETRY_END. `why_not`: why
   // another run may differ; empty if it may not.
   void finish(const std::string& why_not);
+
+  // All that the node knows of its inputs so far, for a process that is killed and comes back; an archive
+  // that reads belongs to a node that has heard nothing. Not possible before SESSION, within a sweep of
+  // several chunks, and when done.
+  bool canSave() const { return session_message_ && sweep_.empty() && !done() && parts_.visit_state; }
+  void visitState(StateArchive& archive);
 
   void publishStatus();
   // Sends ODOMETRY_END once more, for a reader that lost it (same sequence number).
@@ -66,6 +74,7 @@ class OdometryNode {
 
  private:
   void onSession(const session_t& m);
+  void begin(const session_t& m, Session session);
   void onPackets(const velodyne_packets_t& m);
   void onPoints(const lidar_points_t& m);
   void onSpotOdometry(const spot_odometry_t& m);
@@ -85,6 +94,7 @@ class OdometryNode {
   std::string odometry_override_;
   InputGate gate_;
 
+  std::optional<session_t> session_message_;  // that began the session, as it came
   std::optional<Session> session_;
   OdometryMode mode_ = OdometryMode::kLidar;
   OdometryParts::Decode decode_;

@@ -41,6 +41,11 @@ class ScanQueue {
   // The oldest scan, if it is ready.
   std::optional<Ready> pop();
 
+  // All but whether it waits; see StateArchive.
+  void visitState(auto& archive) {
+    archive(closed_, scans_, samples_, offset_, newest_scan_, newest_sample_, released_);
+  }
+
   size_t size() const { return scans_.size(); }
   size_t samples() const { return samples_.size(); }
 

@@ -18,6 +18,8 @@ struct Surfel {
   double count = 0;                                      // points behind it
   double variance_m2 = 0;                                // of the mean along the normal
   int32_t time_us = 0;                                   // relative to the scan's end
+
+  void visitState(auto& archive) { archive(mean, normal, covariance, count, variance_m2, time_us); }
 };
 
 // Variance [rad^2] of the normal of `count` points that scatter thickness2 [m^2] along it and width2 along

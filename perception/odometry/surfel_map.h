@@ -18,6 +18,8 @@ struct MapCell {
   double variance_m2 = 0;                             // of the mean along the normal
   double tilt_variance = 0;                           // of the normal, per radian^2, worst direction
   uint64_t key = 0;
+
+  void visitState(auto& archive) { archive(mean, normal, scatter, count, variance_m2, tilt_variance, key); }
 };
 
 // The voxels of VGICP, split by the side from which a surface was seen: a cell belongs to a cube and to one
@@ -27,7 +29,7 @@ struct MapCell {
 // its surface in the cubes before and behind it along the facing axis too.
 class SurfelMap {
  public:
-  explicit SurfelMap(double cell_m) : cell_m_(cell_m) {}
+  explicit SurfelMap(double cell_m = 1) : cell_m_(cell_m) {}
 
   // Adds a patch moved by T_map_body: merged into the surface it lies on (closer than `merge_m`), else a new
   // cell.
@@ -40,6 +42,8 @@ class SurfelMap {
 
   // Forgets cells farther than radius_m from the centre.
   void prune(const Eigen::Vector3d& centre, double radius_m);
+
+  void visitState(auto& archive) { archive(cell_m_, cells_, index_); }
 
   size_t size() const { return cells_.size(); }
   bool empty() const { return cells_.empty(); }

@@ -31,6 +31,8 @@ class VoxelIndex {
     ++size_;
   }
 
+  void visitState(auto& archive) { archive(slots_, size_); }
+
   // One key from three cell coordinates (20 bits each: 524,288 cells either way) and a class below 16.
   static uint64_t pack(int64_t x, int64_t y, int64_t z, uint64_t cls) {
     constexpr int64_t kOffset = 1 << 19;

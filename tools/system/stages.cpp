@@ -17,20 +17,26 @@ std::vector<std::string> allStages() {
 
 OdometryParts makeOdometryParts(const SystemConfig& config, const std::shared_ptr<Vlp16Counts>& counts) {
   OdometryParts parts;
-  parts.make_decoder = [counts] {
-    auto decoder = std::make_shared<RevolutionAssembler>();
+  struct Made {
+    std::shared_ptr<RevolutionAssembler> decoder;
+    std::shared_ptr<Odometry> odometry;
+  };
+  const auto made = std::make_shared<Made>();
+  parts.make_decoder = [counts, made] {
+    const auto decoder = made->decoder = std::make_shared<RevolutionAssembler>();
     return [decoder, counts](const VelodynePacket& packet) {
       std::optional<LidarScan> scan = decoder->step(packet.time, packet.bytes);
       if (counts) *counts = decoder->counts();
       return scan;
     };
   };
-  parts.make_step = [config](OdometryMode mode, const SE3& T_body_lidar) {
-    auto odometry = std::make_shared<Odometry>(config.odometry, mode, T_body_lidar);
+  parts.make_step = [config, made](OdometryMode mode, const SE3& T_body_lidar) {
+    const auto odometry = made->odometry = std::make_shared<Odometry>(config.odometry, mode, T_body_lidar);
     return [odometry](const LidarScan& scan, std::span<const BodyOdometry> samples) {
       return odometry->step(scan, samples);
     };
   };
+  parts.visit_state = [made](StateArchive& archive) { archive(*made->decoder, *made->odometry); };
   parts.clock = config.odometry.clock;
   return parts;
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/base/error.h"
+#include "common/base/state_archive.h"
 #include "common/bus/channels.h"
 #include "common/bus/journal_bus.h"
 #include "common/bus/memory_bus.h"
@@ -99,7 +100,7 @@ TEST_F(JournalTest, AnotherFileIsNamedAndLeftAlone) {
 // Adds up what it hears and says the sum: a node that is a function of what it heard.
 class Sum {
  public:
-  Sum(MemoryBus& wire, const std::string& path) : bus(wire, path), publisher(bus) {
+  Sum(MemoryBus& wire, const std::string& path, int64_t every_bytes = 0) : bus(wire, path), publisher(bus) {
     publisher.setSession(7);
     sgraphs::subscribe(
         bus, channels::kPlanesEnd,
@@ -112,8 +113,18 @@ class Sum {
       sum *= 2;
       say();
     });
+    if (every_bytes > 0)
+      bus.keepCheckpoints(
+          every_bytes,
+          [this] {
+            StateArchive archive;
+            archive(*this);
+            return archive.takeBytes();
+          },
+          [this](Bus::Bytes bytes) { StateArchive{bytes}(*this); });
     resumed = bus.resume();
   }
+  void visitState(StateArchive& archive) { archive(publisher, sum); }
   void say() {
     run_result_t out{};
     out.rounds = sum;
@@ -167,6 +178,53 @@ TEST_F(JournalBusTest, AProcessThatWasKilledGoesOnWhereItWasAndSaysItsLastWordAg
   EXPECT_EQ(heard[1].rounds, 244);
   EXPECT_EQ(heard[1].header.seq, 4) << "numbers go on";
   EXPECT_EQ(heard[1].header.boot, 1) << "and tell that there was a restart";
+}
+
+TEST_F(JournalBusTest, WithCheckpointsTheJournalStaysSmallAndTellsTheSame) {
+  constexpr int64_t kEvery = 1000;
+  int64_t sum = 0, longest = 0;
+  for (int64_t life = 0; life < 3; ++life) {
+    MemoryBus own;
+    std::vector<run_result_t> heard;
+    subscribe(
+        own, channels::kRunResult, [&heard](const run_result_t& m) { heard.push_back(m); }, [] {});
+    Sum reader(own, path, kEvery);
+    EXPECT_EQ(reader.sum, sum);
+    EXPECT_EQ(reader.bus.boot(), life);
+    EXPECT_LT(reader.resumed, 20) << "only what came behind the checkpoint";
+    own.dispatch(0);
+    const size_t repeated = heard.size();
+    for (int64_t i = 1; i <= 100; ++i) {
+      stream_end_t m{};
+      m.header.utime = i;
+      publish(own, channels::kPlanesEnd, m);
+      own.dispatch(0);
+      sum += i;
+      longest = std::max(longest, static_cast<int64_t>(std::filesystem::file_size(path)));
+    }
+    ASSERT_EQ(heard.size(), repeated + 100);
+    EXPECT_EQ(heard.back().rounds, sum);
+    EXPECT_EQ(heard.back().header.seq, 100 * (life + 1) - 1) << "numbers go on";
+    EXPECT_EQ(heard.back().header.boot, life);
+  }
+  EXPECT_LT(longest, 2 * kEvery);
+}
+
+TEST_F(JournalBusTest, ACheckpointThatCannotBeReadEndsTheProcessAndTheJournal) {
+  {
+    Sum first(wire, path, 100);
+    for (int64_t i = 0; i < 20; ++i) tell(i);
+  }
+  MemoryBus next;
+  try {
+    // This one keeps none.
+    Sum second(next, path);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("keeps no checkpoints"), std::string::npos) << e.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(Sum(next, path).sum, 0) << "and the next one starts anew";
 }
 
 TEST_F(JournalBusTest, EveryRestartRaisesBoot) {
