@@ -22,6 +22,9 @@ class KeyframeRegistration {
   std::vector<RelativePose> step(KeyframeId id, const SE3& T_odom_body, const std::vector<Surfel>& surfels,
                                  const Matrix6d& anchor_covariance, int threads);
 
+  // What comes is registered against nothing from before.
+  void forget() { references_.clear(); }
+
   // All but the configuration; see StateArchive.
   void visitState(auto& archive) { archive(references_); }
 

@@ -20,7 +20,11 @@ constexpr int kMinMatches = 60;    // fewer matches are no registration
 constexpr double kMinShare = 0.08;
 constexpr double kDegenerateSigma_m = 0.03;  // a direction that one scan knows worse than this is not seen
 constexpr double kDegenerateSigma_rad = 0.01;
-constexpr Duration kMaxGap{500000};     // a longer silence begins a new local motion
+constexpr Duration kMaxGap{500000};  // a longer silence begins a new local motion
+// After a silence this long, with no legs to bridge it, nothing is known of where the robot went meanwhile:
+// no registration tells one wall of a building from the next.
+constexpr Duration kLostGap{2000000};
+constexpr double kWalk_mps = 1.0, kClimb_mps = 0.1, kTurn_rad_s = 0.8, kTilt_rad = 0.05;
 constexpr Duration kMaxSweep{2000000};  // no LiDAR takes longer: such a scan's times are wrong
 constexpr Duration kMinSweep{5000};     // a shorter one has no firing times: it was taken at one instant
 constexpr Duration kFirstSweep{100000};
@@ -49,6 +53,14 @@ int countDegenerate(const Matrix6d& information) {
   return count(0, 3, kDegenerateSigma_m) + count(3, 0, kDegenerateSigma_rad);
 }
 
+// Of the motion in a silence, in body.
+Matrix6d unseenMotion(Duration gap) {
+  const double s = gap.seconds(), walked_m = kWalk_mps * s, turned_rad = std::min(kTurn_rad_s * s, 3.0);
+  Vector6d sigma;
+  sigma << walked_m, walked_m, kClimb_mps * s, kTilt_rad, kTilt_rad, turned_rad;
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
 }  // namespace
 
 class Odometry::Impl {
@@ -72,7 +84,7 @@ class Odometry::Impl {
     archive(map_, builder_, neighbours_, has_previous_, has_twist_, previous_pose_, legs_at_previous_end_,
             previous_end_, gap_, previous_twist_, height_m_, registered_covariance_,
             previous_registered_covariance_, keyframe_covariance_, edge_covariance_, T_odom_keyframe_,
-            all_registered_, failures_, next_scan_, next_keyframe_, last_keyframe_scan_);
+            all_registered_, bridged_, new_map_, failures_, next_scan_, next_keyframe_, last_keyframe_scan_);
   }
 
  private:
@@ -144,9 +156,11 @@ class Odometry::Impl {
       // Scans follow each other without a gap, except where one was lost.
       const Duration gap = motion.begin - previous_end_;
       begin = gap < kMaxGap ? previous_pose_ * se3Exp(gap.seconds() * previous_twist_) : previous_pose_;
+      bridged_ = false;
       if (gap.us > 1000 && mode_ != OdometryMode::kLidar) {
         const std::optional<SE3> to = legsPoseAt(legs, motion.begin);
-        if (legs_at_previous_end_ && to) begin = previous_pose_ * (legs_at_previous_end_->inverse() * *to);
+        bridged_ = legs_at_previous_end_ && to;
+        if (bridged_) begin = previous_pose_ * (legs_at_previous_end_->inverse() * *to);
       }
       gap_ = gap;
     }
@@ -167,6 +181,13 @@ class Odometry::Impl {
     e.extrapolated = has_previous_ && mode_ != OdometryMode::kLidar && !measured;
     registered_covariance_ = Matrix6d::Zero();
     const bool trusted_before = std::exchange(all_registered_, false);
+    if (has_previous_ && gap_ >= kLostGap && !bridged_) {
+      e.covariance = unseenMotion(gap_);
+      e.extrapolated = true;
+      map_ = SurfelMap(config_.registration.cell_m);
+      neighbours_.forget();
+      new_map_ = true;
+    }
     if (mode_ == OdometryMode::kEncoder || map_.empty()) return;
 
     MotionPrior prior;
@@ -270,6 +291,7 @@ class Odometry::Impl {
     keyframe_covariance_ = registered_covariance_;
     edge_covariance_ = Matrix6d::Zero();
     last_keyframe_scan_ = e.scan;
+    new_map_ = false;
     all_registered_ = true;
     return keyframe;
   }
@@ -279,7 +301,7 @@ class Odometry::Impl {
   Matrix6d odometryEdgeCovariance(const SE3& T_from_to) const {
     const CovarianceConfig& c = config_.covariance;
     Matrix6d covariance = edge_covariance_;
-    if (registered_covariance_.trace() > 0)
+    if (registered_covariance_.trace() > 0 && !new_map_)
       covariance = composeCovariance(keyframe_covariance_, T_from_to, registered_covariance_);
     covariance.diagonal().head<3>().array() += c.floor_m * c.floor_m;
     covariance.diagonal().tail<3>().array() += c.floor_rad * c.floor_rad;
@@ -322,6 +344,8 @@ class Odometry::Impl {
   Matrix6d edge_covariance_ = Matrix6d::Zero();                 // summed up since the last keyframe
   SE3 T_odom_keyframe_;
   bool all_registered_ = true;  // every scan since the last keyframe found its place in the map
+  bool bridged_ = false;        // legs measured the motion since the scan before, however long ago it was
+  bool new_map_ = false;        // the local map began anew since the last keyframe
   int failures_ = 0;            // scans in a row that found no place in the map
   int64_t next_scan_ = 0, next_keyframe_ = 0, last_keyframe_scan_ = 0;
 };

@@ -13,6 +13,8 @@ namespace {
 
 // A stamp further than this from all others is an error of its source and would stop the queue for good.
 constexpr Duration kMaxTimeJump{3'600'000'000};
+// UDP reorders by less than this.
+constexpr Duration kMaxReorder{100'000};
 // A sweep in more chunks than this is no sweep (2800 points each).
 constexpr int kMaxSweepChunks = 1000;
 // To be raised with every change of what visitState() lists, anywhere.
@@ -111,9 +113,10 @@ void OdometryNode::onPackets(const velodyne_packets_t& m) {
   if (!packets) return gate_.reject(channel, "counts that do not match");
   for (size_t i = 0; i < packets->size(); ++i) {
     const VelodynePacket& packet = (*packets)[i];
-    if (packet.time < newest_packet_) return gate_.reject(channel, "time runs backwards");
+    // What the network has swapped the decoder refuses, packet by packet.
+    if (packet.time < newest_packet_ - kMaxReorder) return gate_.reject(channel, "time runs backwards");
     if (!plausible(channel, packet.time)) return;
-    newest_packet_ = packet.time;
+    newest_packet_ = std::max(newest_packet_, packet.time);
     const Stopwatch watch;
     std::optional<LidarScan> scan = decode_(packet);
     decode_latency_.add(watch.elapsedUs());

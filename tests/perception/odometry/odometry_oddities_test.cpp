@@ -72,6 +72,33 @@ TEST(OdometryOdditiesTest, SurvivesLostScans) {
   }
 }
 
+// Regression: the first scan behind a silence was registered against the map from before, wherever the robot
+// had gone meanwhile, and its edge said that it was certain.
+TEST(OdometryOdditiesTest, AfterALongSilenceWithoutLegsNothingIsClaimedOfTheWay) {
+  SimulatedWalk walk = straightWalk(6);
+  const Time before = walk.scans[11].end;
+  walk.scans.erase(walk.scans.begin() + 12, walk.scans.begin() + 37);
+  const OdometryRun run = runOdometry(walk, OdometryMode::kLidar);
+  expectFinite(run);
+  int bridges = 0;
+  for (const Keyframe& keyframe : run.keyframes)
+    for (const RelativePose& r : keyframe.relative_poses) {
+      const auto poseAt = [&](KeyframeId id) {
+        return walk.truth.poseAt(run.keyframes.at(static_cast<size_t>(id.value)).time);
+      };
+      const auto timeOf = [&](KeyframeId id) { return run.keyframes.at(static_cast<size_t>(id.value)).time; };
+      const Vector6d error = se3Log(r.T_from_to.inverse() * poseAt(r.from).inverse() * poseAt(r.to));
+      EXPECT_LT(error.dot(r.covariance.ldlt().solve(error)), 22.5) << "99.9 % of 6 degrees of freedom";
+      if (timeOf(r.from) > before || timeOf(r.to) <= before) continue;
+      ++bridges;
+      EXPECT_EQ(r.kind, RelativePoseKind::kOdometry) << "no cloud from before is the neighbour of one behind";
+      EXPECT_GT(r.covariance(0, 0), 2.0);
+    }
+  EXPECT_EQ(bridges, 1);
+  // Legs know the way.
+  EXPECT_LT(worstError(runOdometry(walk, OdometryMode::kFused), walk), 0.02);
+}
+
 TEST(OdometryOdditiesTest, RefusesScansThatTellNothing) {
   SimulatedWalk walk = straightWalk(1.2);
   const float nan = std::numeric_limits<float>::quiet_NaN();
