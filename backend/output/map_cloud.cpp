@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <unordered_map>
+#include <vector>
 
 namespace sgraphs {
 namespace {
@@ -16,19 +16,49 @@ struct VoxelKey {
   bool operator==(const VoxelKey& other) const { return order() == other.order(); }
 };
 
-struct VoxelHash {
-  size_t operator()(const VoxelKey& key) const {
-    // Large odd multipliers spread neighbouring cells; the hash only finds voxels, it orders nothing.
-    return static_cast<size_t>(key.cell.x()) * 0x9E3779B97F4A7C15ULL ^
-           static_cast<size_t>(key.cell.y()) * 0xC2B2AE3D27D4EB4FULL ^
-           static_cast<size_t>(key.cell.z()) * 0x165667B19E3779F9ULL ^ static_cast<size_t>(key.floor) << 56;
-  }
-};
-
 struct Voxel {
   VoxelKey key;
   Eigen::Vector3d weighted_sum = Eigen::Vector3d::Zero();
   int64_t weight = 0;
+};
+
+// Voxels in order of their first point, found by open addressing: half of a map's time went into the nodes of
+// std::unordered_map.
+class VoxelTable {
+ public:
+  VoxelTable() : slots_(1 << 16, -1) {}
+
+  Voxel& at(const VoxelKey& key) {
+    if (2 * (voxels_.size() + 1) > slots_.size()) grow();
+    int32_t& slot = slots_[slotOf(key)];
+    if (slot < 0) {
+      slot = static_cast<int32_t>(voxels_.size());
+      voxels_.push_back({key});
+    }
+    return voxels_[static_cast<size_t>(slot)];
+  }
+  std::vector<Voxel>& voxels() { return voxels_; }
+
+ private:
+  // The slot of the key, or the empty one where it belongs.
+  size_t slotOf(const VoxelKey& key) const {
+    // Large odd multipliers spread neighbouring cells; the hash only finds voxels, it orders nothing.
+    const uint64_t hash = static_cast<uint64_t>(key.cell.x()) * 0x9E3779B97F4A7C15ULL ^
+                          static_cast<uint64_t>(key.cell.y()) * 0xC2B2AE3D27D4EB4FULL ^
+                          static_cast<uint64_t>(key.cell.z()) * 0x165667B19E3779F9ULL ^
+                          static_cast<uint64_t>(key.floor) << 56;
+    for (size_t i = hash ^ (hash >> 32);; ++i) {
+      const int32_t slot = slots_[i & (slots_.size() - 1)];
+      if (slot < 0 || voxels_[static_cast<size_t>(slot)].key == key) return i & (slots_.size() - 1);
+    }
+  }
+  void grow() {
+    slots_.assign(2 * slots_.size(), -1);
+    for (size_t i = 0; i < voxels_.size(); ++i) slots_[slotOf(voxels_[i].key)] = static_cast<int32_t>(i);
+  }
+
+  std::vector<Voxel> voxels_;
+  std::vector<int32_t> slots_;  // a power of two of them; -1: empty
 };
 
 }  // namespace
@@ -38,8 +68,7 @@ FloorId floorOf(const KeyframeNode& node) {
 }
 
 std::vector<MapPoint> buildMap(const SituationalGraph& graph, double voxel_m) {
-  std::vector<Voxel> voxels;
-  std::unordered_map<VoxelKey, size_t, VoxelHash> index;
+  VoxelTable table;
   for (const auto& [id, node] : graph.keyframes) {
     if (!node.keyframe) continue;
     const Eigen::Matrix3d rotation = node.T_map_body.matrix3();
@@ -47,14 +76,13 @@ std::vector<MapPoint> buildMap(const SituationalGraph& graph, double voxel_m) {
       const Eigen::Vector3d p = rotation * point.position_body.cast<double>() + node.T_map_body.translation;
       if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 1e6) continue;
       const VoxelKey key{floorOf(node).value, (p / voxel_m).array().floor().cast<int>()};
-      const auto [found, is_new] = index.try_emplace(key, voxels.size());
-      if (is_new) voxels.push_back({key});
-      Voxel& voxel = voxels[found->second];
+      Voxel& voxel = table.at(key);
       const int weight = std::max<int>(1, point.count);
       voxel.weighted_sum += weight * p;
       voxel.weight += weight;
     }
   }
+  std::vector<Voxel>& voxels = table.voxels();
   std::sort(voxels.begin(), voxels.end(),
             [](const Voxel& a, const Voxel& b) { return a.key.order() < b.key.order(); });
   std::vector<MapPoint> map;
