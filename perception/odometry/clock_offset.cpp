@@ -130,10 +130,11 @@ std::optional<ClockOffset::Estimate> ClockOffset::estimate() const {
   const double bend = before - 2 * at + after;
   if (bend <= 0 || at > (1 - kLeastCorrelation * kLeastCorrelation) * lidar_lidar_) return std::nullopt;
   const double shift = 0.5 * (before - after) / bend;
-  const auto half = static_cast<double>(lags_.size() / 2);
+  const size_t middle = lags_.size() / 2;  // the lag of zero
   const double curvature = bend / (2 * kLagStep_s * kLagStep_s);
   const double variance = at / static_cast<double>(used_ - 2);
-  return Estimate{kLagStep_s * (static_cast<double>(best) - half + shift), std::sqrt(variance / curvature)};
+  return Estimate{kLagStep_s * (static_cast<double>(best) - static_cast<double>(middle) + shift),
+                  std::sqrt(variance / curvature)};
 }
 
 void ClockOffset::update() {

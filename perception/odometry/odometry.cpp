@@ -24,7 +24,7 @@ constexpr Duration kMaxGap{500000};  // a longer silence begins a new local moti
 // After a silence this long, with no legs to bridge it, nothing is known of where the robot went meanwhile:
 // no registration tells one wall of a building from the next.
 constexpr Duration kLostGap{2000000};
-constexpr double kWalk_mps = 1.0, kClimb_mps = 0.1, kTurn_rad_s = 0.8, kTilt_rad = 0.05;
+constexpr double kWalk_mps = 1.0, kClimb_mps = 0.1, kTurn_radps = 0.8, kTilt_rad = 0.05;
 constexpr Duration kMaxSweep{2000000};  // no LiDAR takes longer: such a scan's times are wrong
 constexpr Duration kMinSweep{5000};     // a shorter one has no firing times: it was taken at one instant
 constexpr Duration kFirstSweep{100000};
@@ -55,7 +55,7 @@ int countDegenerate(const Matrix6d& information) {
 
 // Of the motion in a silence, in body.
 Matrix6d unseenMotion(Duration gap) {
-  const double s = gap.seconds(), walked_m = kWalk_mps * s, turned_rad = std::min(kTurn_rad_s * s, 3.0);
+  const double s = gap.seconds(), walked_m = kWalk_mps * s, turned_rad = std::min(kTurn_radps * s, 3.0);
   Vector6d sigma;
   sigma << walked_m, walked_m, kClimb_mps * s, kTilt_rad, kTilt_rad, turned_rad;
   return sigma.cwiseAbs2().asDiagonal();

@@ -220,7 +220,7 @@ std::optional<ClockOffset::Estimate> OdometryNode::legsClock() const {
 }
 
 std::string OdometryNode::state() const {
-  const std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
+  std::string state = done() ? "done" : session_ ? "running" : "waiting for SESSION";
   const std::optional<ClockOffset::Estimate> clock = legsClock();
   if (!clock) return state;
   return fmt::format("{}; legs' clock {:+.1f} ms (+- {:.1f}), {:+.1f} ms in force", state,

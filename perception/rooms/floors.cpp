@@ -28,7 +28,8 @@ Polygon2d outlineOf(const MapPlane& plane) {
 // Level planes that look up and lie under keyframes of a storey; the height that half of their area is below.
 std::optional<double> surfaceBelow(const WallMap& map, const StoreyTracker& storeys, FloorId floor) {
   std::vector<Level> levels;
-  for (const auto& [id, plane] : map.levelPlanes()) {
+  for (const auto& [id, level] : map.levelPlanes()) {
+    const auto& plane = level;  // a binding cannot be captured (clang 14)
     if (plane.normal_map.z() < 0) continue;
     const Polygon2d outline = outlineOf(plane);
     const bool walked_on =

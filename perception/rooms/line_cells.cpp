@@ -51,7 +51,7 @@ bool isCut(const LineCell& cell, const OutlineLine& line, bool* in_front) {
 
 std::vector<LineCell> cellsOf(const Eigen::AlignedBox2d& frame, const std::vector<OutlineLine>& lines,
                               const std::vector<Polygon2d>& parts) {
-  const Eigen::Vector2d a = frame.min(), b = frame.max();
+  const Eigen::Vector2d &a = frame.min(), &b = frame.max();
   std::vector<Work> works(1);
   works[0].cell.corners = {a, {b.x(), a.y()}, b, {a.x(), b.y()}};
   works[0].cell.lines = {-1, -1, -1, -1};

@@ -53,7 +53,7 @@ std::vector<RoomCandidate> RoomFinder::candidatesOf(const FreeSpace& free_space,
   std::erase_if(cache_, [&](const auto& entry) { return free_space.clusters.count(entry.first) == 0; });
   for (const auto& [id, cluster] : free_space.clusters) {
     const auto floor = std::find_if(floors.begin(), floors.end(),
-                                    [&](const FloorObservation& f) { return f.id == cluster.floor; });
+                                    [id = cluster.floor](const FloorObservation& f) { return f.id == id; });
     if (floor == floors.end()) continue;
     const std::optional<RoomShape>& shape = shapeOf(cluster, bandAbove(surfaceOf(*floor, storeys_)));
     if (!shape) continue;

@@ -197,7 +197,7 @@ std::optional<RoomShape> roomShapeOf(const FreeSpaceCluster& cluster, const std:
   // Where its walls close a room, it does not end where sight did.
   const std::vector<OutlineLine> all = evidence.lines;
   evidence.lines.resize(evidence.num_seen);
-  const std::optional<RoomShape> closed = shapeAmong(evidence, cluster, border, config);
+  std::optional<RoomShape> closed = shapeAmong(evidence, cluster, border, config);
   if (closed && closed->kind != RoomKind::kInfinite) return closed;
   evidence.lines = all;
   return shapeAmong(evidence, cluster, border, config);

@@ -40,7 +40,7 @@ double sharedArea(const Polygon2d& a, const Polygon2d& b) {
     return box;
   };
   if (!boxOf(a).intersects(boxOf(b))) return 0;
-  const Eigen::Vector2d apex = a.front();
+  const Eigen::Vector2d& apex = a.front();
   struct Triangle {
     Polygon2d corners;
     double sign;

@@ -12,8 +12,7 @@ namespace sgraphs::test {
 // The message as its receiver gets it.
 template <typename Message>
 Message throughBytes(const Message& message) {
-  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
-  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
+  const std::vector<uint8_t> bytes = encoded(message);
   Message received{};
   EXPECT_TRUE(decode(bytes, received));
   return received;
@@ -22,6 +21,7 @@ Message throughBytes(const Message& message) {
 template <typename Message>
 std::vector<Message> throughBytes(const std::vector<Message>& messages) {
   std::vector<Message> received;
+  received.reserve(messages.size());
   for (const Message& message : messages) received.push_back(throughBytes(message));
   return received;
 }

@@ -1,6 +1,7 @@
 #include "perception/free_space/clusters/basins.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "perception/free_space/clusters/disjoint_sets.h"
 
@@ -16,7 +17,7 @@ std::vector<uint32_t> widestFirst(const StoreyGrid& grid) {
   for (size_t i = 0; i < key.size(); ++i) {
     if (grid.state[i] != CellState::kFree) continue;
     const double c = grid.clearance_m[i];
-    key[i] = 1 + static_cast<uint32_t>(c * c * scale + 0.5);
+    key[i] = 1 + static_cast<uint32_t>(std::lround(c * c * scale));
     max_key = std::max(max_key, key[i]);
   }
   std::vector<uint32_t> begin(max_key + 2, 0);

@@ -205,6 +205,7 @@ bool isWall(const CellLoop& loop, size_t begin, size_t end, double min_length_m)
 
 std::vector<BorderCorner> borderOf(const CellLoop& loop, double cell_m, size_t max_corners) {
   const size_t n = loop.corners.size();
+  if (n == 0) return {};
   const std::vector<BorderKind> kinds = smoothed(loop.kinds);
   std::vector<size_t> changes;
   for (size_t i = 0; i < n; ++i)

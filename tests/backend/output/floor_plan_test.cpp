@@ -61,7 +61,7 @@ TEST(FloorPlanTest, PngHasWhitePaperDarkWallsAndAColouredPath) {
   int white = 0, dark = 0, coloured = 0;
   for (int row = 0; row < image.rows; ++row)
     for (int col = 0; col < image.cols; ++col) {
-      const auto pixel = image.at<cv::Vec3b>(row, col);
+      const auto& pixel = image.at<cv::Vec3b>(row, col);
       const int low = std::min({pixel[0], pixel[1], pixel[2]}),
                 high = std::max({pixel[0], pixel[1], pixel[2]});
       white += low > 250;

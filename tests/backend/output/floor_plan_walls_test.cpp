@@ -62,7 +62,7 @@ int darkRuns(const cv::Mat& image, int col, int row_begin, int row_end) {
   int runs = 0;
   bool dark = false;
   for (int row = row_begin; row < row_end; ++row) {
-    const auto pixel = image.at<cv::Vec3b>(row, col);
+    const auto& pixel = image.at<cv::Vec3b>(row, col);
     const bool now = std::max({pixel[0], pixel[1], pixel[2]}) < 110;
     runs += now && !dark;
     dark = now;
