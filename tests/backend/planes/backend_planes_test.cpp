@@ -16,7 +16,6 @@ namespace {
 using testing_support::Face;
 using testing_support::makeRingWalk;
 using testing_support::noisy;
-using testing_support::RingOptions;
 using testing_support::RingWalk;
 
 struct WholeRun {
@@ -228,6 +227,7 @@ RingWalk walkAmong(const std::vector<Face>& faces, const std::vector<Eigen::Vect
 
 std::vector<Eigen::Vector3d> line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, int n) {
   std::vector<Eigen::Vector3d> places;
+  places.reserve(static_cast<size_t>(n));
   for (int i = 0; i < n; ++i) places.emplace_back(from + (to - from) * i / (n - 1));
   return places;
 }

@@ -23,6 +23,7 @@ class PlaneAssociationTest : public ::testing::Test {
   std::vector<std::optional<size_t>> associate(const std::vector<Face>& seen, const SE3& T,
                                                double drift_m = 0.01, double drift_rad = 0.002) {
     std::vector<PlaneObservation> observations;
+    observations.reserve(seen.size());
     for (const Face& face : seen) observations.push_back(observe(face, T_true));
     std::vector<PlaneCandidate> candidates;
     for (const PlaneNode& plane : planes)

@@ -38,7 +38,7 @@ Eigen::Matrix<double, kSize, 1> gaussian(std::mt19937& random) {
 // A rounded way about the origin, gently rolling.
 SE3 wayAt(const PlaneWorldOptions& options, double k, std::mt19937* random) {
   const double radius = options.per_lap / (2.0 * M_PI), angle = 2.0 * M_PI * k / options.per_lap;
-  const SE3 T(so3Exp({0, 0, angle}), {radius * std::sin(angle), radius * (1.0 - std::cos(angle)), 0});
+  SE3 T(so3Exp({0, 0, angle}), {radius * std::sin(angle), radius * (1.0 - std::cos(angle)), 0});
   if (random == nullptr) return T;
   Vector6d sway = gaussian<6>(*random);
   sway.head<3>() *= 0.1;

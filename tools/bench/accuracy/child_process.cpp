@@ -34,6 +34,7 @@ double seconds(const timeval& time) {
 
 ChildResult runChild(const std::vector<std::string>& command, const std::string& output_file) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

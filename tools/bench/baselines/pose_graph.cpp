@@ -31,6 +31,7 @@ std::vector<SE3> optimisePoses(const std::vector<SE3>& initial, const std::vecto
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   std::vector<SE3> poses;
+  poses.reserve(states.size());
   for (const auto& state : states) poses.push_back(PoseManifold::load(state.data()));
   return poses;
 }
