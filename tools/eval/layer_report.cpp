@@ -156,6 +156,7 @@ std::string floorLines(const FloorResult& floors, const std::vector<StoreyError>
     lines += "\n" + listLine("floors", "false", falseOnes(floors));
   }
   std::vector<std::string> errors;
+  errors.reserve(by_storey.size());
   for (const StoreyError& error : by_storey)
     errors.push_back(storeyName(floors, error.storey) +
                      format(" %.4f m (%zu poses)", error.translation_m.rmse, error.translation_m.count));

@@ -38,6 +38,7 @@ Child::Child(const std::vector<std::string>& command, const std::string& output_
   const int output = open(output_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (output < 0) throw Error("cannot write '" + output_file + "': " + std::strerror(errno));
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   int failure[2] = {-1, -1};  // closed by a successful exec

@@ -69,6 +69,7 @@ void runGraphicSpy(const std::string& url) {
   const std::vector<std::string> words{"java", "-Djava.net.preferIPv4Stack=true", "-Xmx512m",
                                        "-cp",  class_path + jar.string(),         "lcm.spy.Spy"};
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   execvp(arguments[0], arguments.data());

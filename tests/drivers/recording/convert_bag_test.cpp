@@ -66,7 +66,7 @@ template <typename Kind = Error>
 std::string failureOf(const fs::path& folder, ConvertOptions options) {
   options.output = folder / "out.lcmlog";
   fs::remove(options.output);
-  const std::string message = test::messageOf<Kind>([&] { convertRecording(options, [](double) {}); });
+  std::string message = test::messageOf<Kind>([&] { convertRecording(options, [](double) {}); });
   EXPECT_FALSE(fs::exists(options.output));
   EXPECT_EQ(message.find('\n'), std::string::npos);
   return message;

@@ -69,7 +69,7 @@ std::string failureOf(const std::vector<uint8_t>& bytes, ConvertOptions options 
   const fs::path folder = test::freshFolder();
   test::writeBytes(folder / "in.pcap", bytes);
   options.pcap = folder / "in.pcap";
-  const std::string message = test::messageOf<Error>([&] { convertTo(folder, options); });
+  std::string message = test::messageOf<Error>([&] { convertTo(folder, options); });
   EXPECT_FALSE(fs::exists(folder / "out.lcmlog"));
   EXPECT_FALSE(fs::exists(folder / "out.lcmlog.part"));
   EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -149,7 +149,11 @@ TriangleMesh SdfReader::planeOf(const XMLElement& plane) const {
 
 std::optional<TriangleMesh> SdfReader::shapeOf(const XMLElement& geometry) {
   const XMLElement* shape = geometry.FirstChildElement();
-  const std::string kind = shape ? shape->Name() : "empty";
+  if (!shape) {
+    ++unknown_["empty"];
+    return std::nullopt;
+  }
+  const std::string kind = shape->Name();
   if (kind == "mesh") return meshOf(*shape);
   if (kind == "plane") return planeOf(*shape);
   if (kind == "box") {

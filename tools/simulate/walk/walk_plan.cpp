@@ -14,7 +14,7 @@ constexpr double kFarthestMiss_m = 0.25;     // of a waypoint, by the arc that r
 constexpr double kSmallestRadius_m = 0.2;    // narrower arcs are turned on the spot
 constexpr double kHalfBody_m = 0.3;          // from the body's origin to the fore feet, and to the hind feet
 constexpr double kFullActivity_mps = 0.3;    // speed of full gait
-constexpr double kFullActivity_rad_s = 0.3;  // yaw rate of full gait
+constexpr double kFullActivity_radps = 0.3;  // yaw rate of full gait
 
 double wrap(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
@@ -25,7 +25,7 @@ double headingOf(const Eigen::Vector2d& v) {
 }
 
 double activityOf(double speed, double yaw_rate) {
-  return std::min(1.0, std::max(speed / kFullActivity_mps, std::abs(yaw_rate) / kFullActivity_rad_s));
+  return std::min(1.0, std::max(speed / kFullActivity_mps, std::abs(yaw_rate) / kFullActivity_radps));
 }
 
 // Stretch of constant curvature.
