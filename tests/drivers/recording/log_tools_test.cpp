@@ -21,7 +21,7 @@ constexpr int64_t kStart_us = 1'700'000'000'000'000;
 
 // 4 s of odometry at 50 Hz and packets.
 fs::path makeLog() {
-  const fs::path path = test::freshFolder() / "run.lcmlog";
+  fs::path path = test::freshFolder() / "run.lcmlog";
   LogWriter log(path);
   Session session;
   session.id = 77;

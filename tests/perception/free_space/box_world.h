@@ -24,7 +24,7 @@ struct BoxWorld {
 
   // Walls 0.2 m thick around the inner faces, a floor and a ceiling 2.6 m above it.
   void addRoom(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double z_m = 0) {
-    constexpr double t = 0.2;
+    const double t = 0.2;
     const double top = z_m + 2.6;
     add({low.x() - t, low.y() - t, z_m}, {low.x(), high.y() + t, top});
     add({high.x(), low.y() - t, z_m}, {high.x() + t, high.y() + t, top});

@@ -144,6 +144,7 @@ TEST(FreeSpaceEvidenceTest, WayAndBackIsAsIfNothingHadMoved) {
   const StoreyGrid before = rooms(evidence);
   for (const double shift : {0.4, -0.7, 0.0}) {
     std::vector<MapKeyframe> keyframes;
+    keyframes.reserve(4);
     for (int i = 0; i < 4; ++i)
       keyframes.push_back(mapKeyframe(i, bodyAt(-1.5 + i + shift, 0.3 * i, 0.1 + shift)));
     evidence.step(std::nullopt, updateOf(keyframes));

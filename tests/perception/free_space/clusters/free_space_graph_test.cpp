@@ -92,6 +92,7 @@ TEST(FreeSpaceGraphTest, ASecondUpdateKeepsAllIds) {
   graph.update(grid, grid);
   const auto ids = [](const auto& map) {
     std::vector<int64_t> list;
+    list.reserve(map.size());
     for (const auto& [id, item] : map) list.push_back(id.value);
     return list;
   };

@@ -169,7 +169,9 @@ PlanGrids planGrids(const simulate::Scene& scene, const PlanView& view) {
       const size_t i = rooms.index(x, y);
       const Eigen::Vector2d center = toMap(rooms.center(x, y), -view.yaw_rad);
       for (int k = 0; k < 5; ++k) {
-        const Eigen::Vector2d corner(k == 4 ? 0 : k % 2 - 0.5, k == 4 ? 0 : k / 2 - 0.5);
+        // The four corners, and the middle.
+        const int column = k % 2, row = k / 2;
+        const Eigen::Vector2d corner(k == 4 ? 0 : column - 0.5, k == 4 ? 0 : row - 0.5);
         const Eigen::Vector2d p = toMap(rooms.center(x, y) + 0.98 * rooms.cell_m * corner, -view.yaw_rad);
         wall[i] |= plan.inWall(p) ? 1 : 0;
         thing[i] |= plan.inThing(p) ? 1 : 0;

@@ -124,6 +124,7 @@ TEST(SegmentationTest, AnLShapedRoomIsNotCut) {
 TEST(SegmentationTest, AHexagonAndATrapezoidAreNotCut) {
   Drawing drawing;
   std::vector<Eigen::Vector2d> hexagon;
+  hexagon.reserve(6);
   for (int k = 0; k < 6; ++k) hexagon.emplace_back(3 * std::cos(k * M_PI / 3), 3 * std::sin(k * M_PI / 3));
   drawing.walls(hexagon);
   drawing.room("R1", hexagon);
