@@ -279,9 +279,10 @@ TEST(ConvertMapUpdateTest, KeyframesAndPlanesOfAllChunksAreReadAndOtherLayersPas
 TEST(ConvertMapChunkTest, EveryPlaceOfTheCloudIsThereOnceWithinTheVoxelAndDatagramsStaySmall) {
   Keyframe keyframe;
   keyframe.id = {5};
-  for (int i = 0; i < 100000; ++i)
-    keyframe.points.push_back(
-        {{0.02F * static_cast<float>(i % 1000), 0.3F * static_cast<float>(i / 1000), 1}, 0, 1});
+  for (int row = 0; row < 100; ++row)
+    for (int column = 0; column < 1000; ++column)
+      keyframe.points.push_back(
+          {{0.02F * static_cast<float>(column), 0.3F * static_cast<float>(row), 1}, 0, 1});
   size_t points = 0;
   const auto chunks = test::throughBytes(mapChunks(keyframe));
   EXPECT_EQ(chunks.size(), 3u) << "20,000 voxels, 8,000 points a message";

@@ -16,13 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-template <typename Message>
-std::vector<uint8_t> encoded(const Message& message) {
-  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 std::string textOf(std::span<const uint8_t> bytes, size_t max_elements = 8) {
   return messageText(TypeCatalogue::ours(), bytes, max_elements).value_or("(none)");
 }

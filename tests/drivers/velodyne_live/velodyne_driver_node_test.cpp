@@ -18,7 +18,6 @@ namespace sgraphs {
 namespace {
 
 using test::SensorStream;
-using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -91,7 +90,7 @@ std::filesystem::path writeCapture() {
       pcap.addUdp(frame, datagram.payload);
     }
   }
-  const auto path = test::freshFolder() / "in.pcap";
+  auto path = test::freshFolder() / "in.pcap";
   test::writeBytes(path, pcap.bytes());
   return path;
 }

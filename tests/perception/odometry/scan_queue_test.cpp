@@ -16,6 +16,7 @@ BodyOdometry sampleAt(int64_t us) {
 }
 std::vector<int64_t> timesOf(const std::vector<BodyOdometry>& samples) {
   std::vector<int64_t> times;
+  times.reserve(samples.size());
   for (const BodyOdometry& s : samples) times.push_back(s.time.us);
   return times;
 }

@@ -170,7 +170,8 @@ TEST(PlaneSegmentationTest, GlassInventsNoPlane) {
   cloud.addRectangle({3, -0.1, 0}, {0, 0.2, 0}, {0, 0, 0.2}, 0.01);
   std::uniform_real_distribution<double> depth(3.0, 9.0);
   for (int i = 0; i < 3000; ++i) {
-    const double azimuth = -0.6 + 1.2 * (i % 100) / 100.0, elevation = -0.25 + 0.5 * (i / 100) / 30.0;
+    const int column = i % 100, row = i / 100;
+    const double azimuth = -0.6 + 1.2 * column / 100.0, elevation = -0.25 + 0.5 * row / 30.0;
     const Eigen::Vector3d ray(std::cos(azimuth) * std::cos(elevation),
                               std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
     cloud.keyframe.points.push_back({(depth(cloud.random) * ray).cast<float>(), 0, 1});

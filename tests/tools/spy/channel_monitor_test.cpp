@@ -11,13 +11,6 @@ namespace {
 
 using testing::HasSubstr;
 
-template <typename Message>
-std::vector<uint8_t> encoded(const Message& message) {
-  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 std::vector<uint8_t> mapToOdom(int64_t seq, int64_t boot = 0) {
   map_to_odom_t message{};
   message.header.session = 1;
