@@ -25,6 +25,9 @@ bool Candidates::same(const Candidate& candidate, const SE3& T_map_odom, const S
 void Candidates::add(const std::vector<Look>& looks, const SE3& T_odom_body, double at_m, bool complete) {
   complete_ = complete;
   std::vector<bool> seen(candidates_.size(), false), refuted(candidates_.size(), false);
+  double best_quality = 0;
+  for (const Look& look : looks)
+    if (look.check.alike(verification_)) best_quality = std::max(best_quality, look.check.quality());
   std::vector<Candidate> fresh;
   for (const Look& look : looks) {
     const bool proves = look.check.alike(verification_) && look.check.fixed(verification_);
@@ -34,14 +37,15 @@ void Candidates::add(const std::vector<Look>& looks, const SE3& T_odom_body, dou
       Candidate& c = candidates_[i];
       if (seen[i] || !same(c, look.T_map_odom, T_odom_body, at_m)) continue;
       known = seen[i] = true;
-      refuted[i] = refutes;
+      c.shortfall += std::max(0.0, best_quality - look.check.quality() - 0.5 * verification_.rival_margin);
+      refuted[i] = refutes || c.shortfall > 2.0 * verification_.rival_margin;
       if (!proves) break;
       c.T_map_odom = look.T_map_odom;
       c.seen_m = at_m;
       if (c.looks.size() < kMaxLooks) c.looks.push_back(look);
       break;
     }
-    if (!known && proves) fresh.push_back({look.T_map_odom, at_m, {look}});
+    if (!known && proves) fresh.push_back({look.T_map_odom, at_m, {look}, 0});
   }
   std::vector<Candidate> kept;
   for (size_t i = 0; i < seen.size(); ++i)
@@ -62,9 +66,10 @@ const Candidate* Candidates::found() const {
   const auto looks = static_cast<int>(best.looks.size());
   if (looks < config_.min_looks || best.looks.back().at_m - best.looks.front().at_m < config_.min_span_m)
     return nullptr;
-  if (candidates_.size() > 1 && looks < static_cast<int>(candidates_[1].looks.size()) + config_.lead)
-    return nullptr;
-  return &best;
+  if (candidates_.size() < 2) return &best;
+  // Where a rival was not looked at, the map may be lacking; that proves nothing against it.
+  const auto rival = static_cast<int>(candidates_[1].looks.size());
+  return looks >= rival + config_.lead && looks > 2 * rival ? &best : nullptr;
 }
 
 }  // namespace sgraphs

@@ -21,6 +21,9 @@ struct Candidate {
   SE3 T_map_odom;           // by the newest look that saw it
   double seen_m = 0;        // path walked at that look
   std::vector<Look> looks;  // that prove it, in order of the path
+  // What its looks' qualities lack against the best ones, over what look-alikes differ by: no look may refute
+  // an office that is one door off, but all of them together do.
+  double shortfall = 0;
 };
 
 // The candidates, and which of them is the robot's pose.
