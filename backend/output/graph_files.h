@@ -13,7 +13,8 @@ namespace sgraphs {
 // perturbation (translation [m], rotation [rad]) in the target's body frame. A keyframe whose marginal
 // covariance of T_map_body (tangent of body, given the first keyframe) is known has it in the same form.
 // `sessions`: of a map that was continued; times are then those of the recordings, and keyframes and rooms
-// carry the number of their session. Walls state their tilts as turns about their axes (docs/frames.md, "Planes").
+// carry the number of their session. Walls state their tilts as turns about their axes (docs/frames.md,
+// "Planes").
 std::string graphJson(const SituationalGraph& graph, const std::map<FloorId, FloorNode>& floors,
                       const std::map<KeyframeId, Matrix6d>& keyframe_covariances = {},
                       std::span<const SessionClock> sessions = {});

@@ -100,7 +100,8 @@ std::string graphJson(const SituationalGraph& graph, const std::map<FloorId, Flo
   json["multigraph"] = true;
   json["graph"] = {{"up", vectorJson(graph.up_map)}};
   Json& nodes = json["nodes"] = Json::array();
-  for (const auto& [id, node] : graph.keyframes) nodes.push_back(keyframeJson(node, keyframe_covariances, sessions));
+  for (const auto& [id, node] : graph.keyframes)
+    nodes.push_back(keyframeJson(node, keyframe_covariances, sessions));
   for (const auto& [id, plane] : graph.planes) nodes.push_back(wallJson(plane));
   for (const auto& [id, floor] : floors)
     nodes.push_back({{"id", id.str()},

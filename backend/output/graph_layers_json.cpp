@@ -39,14 +39,14 @@ Json roomJson(const SituationalGraph& graph, const RoomNode& room, std::span<con
     polygon.push_back({corner.position_map.x(), corner.position_map.y()});
   for (const PlaneId wall : wallsOf(graph, room)) walls.push_back(wall.str());
   Json json = {{"id", room.id.str()},
-          {"layer", "rooms"},
-          {"kind", kindName(room.seen.kind)},
-          {"center", {room.center_map.x(), room.center_map.y()}},
-          {"polygon", std::move(polygon)},
-          {"area", room.seen.area_m2},
-          {"walls", std::move(walls)},
-          {"floor", storeyOf(room.seen.floor).str()},
-          {"utime", recordedTime(sessions, room.seen.accepted).us}};
+               {"layer", "rooms"},
+               {"kind", kindName(room.seen.kind)},
+               {"center", {room.center_map.x(), room.center_map.y()}},
+               {"polygon", std::move(polygon)},
+               {"area", room.seen.area_m2},
+               {"walls", std::move(walls)},
+               {"floor", storeyOf(room.seen.floor).str()},
+               {"utime", recordedTime(sessions, room.seen.accepted).us}};
   if (sessions.size() > 1) json["session"] = sessionAt(sessions, room.seen.accepted);
   return json;
 }

@@ -74,8 +74,9 @@ void writeOutputs(const RunRecord& record, const std::string& out_dir) {
   dropWhatMovedAway(graph, map);
   const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);
   writeMap(map, out_dir + "/map.ply");
-  writeFile(out_dir + "/graph.json", graphJson(graph, floors, record.keyframe_covariances,
-                record.continued ? record.continued->sessions : std::vector<SessionClock>()));
+  writeFile(out_dir + "/graph.json",
+            graphJson(graph, floors, record.keyframe_covariances,
+                      record.continued ? record.continued->sessions : std::vector<SessionClock>()));
   writeFile(out_dir + "/graph.g2o", graphG2o(graph));
   if (!graph.keyframes.empty())
     for (const auto& [id, floor] : floors) writeStorey(record, floor, map, out_dir);

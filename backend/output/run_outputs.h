@@ -49,15 +49,15 @@ struct RunRecord {
   // Where the map of an earlier run was continued: stamps of scans and keyframes are then by the map's clock,
   // and poses in odom in that of the map.
   struct Continued {
-    std::string graph_digest;  // of the earlier run, as its summary says
-    bool same = true;          // the loaded map has it
-    int64_t keyframes = 0;     // loaded
-    double load_s = 0;         // wall time
-    double walked_m = 0;       // by the robot, until it was found
-    double after_s = 0;        // sensor time, likewise
-    int64_t looks = 0;         // that prove it
-    KeyframeId matched;        // keyframe of the map beside which it was found
-    SE3 T_mapodom_odom;        // this run's own odom in that of the map
+    std::string graph_digest;            // of the earlier run, as its summary says
+    bool same = true;                    // the loaded map has it
+    int64_t keyframes = 0;               // loaded
+    double load_s = 0;                   // wall time
+    double walked_m = 0;                 // by the robot, until it was found
+    double after_s = 0;                  // sensor time, likewise
+    int64_t looks = 0;                   // that prove it
+    KeyframeId matched;                  // keyframe of the map beside which it was found
+    SE3 T_mapodom_odom;                  // this run's own odom in that of the map
     std::vector<SessionClock> sessions;  // all, this run's last
   };
   std::optional<Continued> continued;

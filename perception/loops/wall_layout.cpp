@@ -136,7 +136,8 @@ std::vector<LayoutMatch> WallLayout::search(const std::vector<WallPoint>& query,
     return static_cast<double>(hits) / n;
   };
   const int turns = static_cast<int>(std::ceil(where.yaw_range_rad / kCoarseStep_rad));
-  const std::vector<Eigen::Vector2d> positions = where.positions_map.empty() ? discOf(where) : where.positions_map;
+  const std::vector<Eigen::Vector2d> positions =
+      where.positions_map.empty() ? discOf(where) : where.positions_map;
   const std::vector<WallPoint> few = thinned(query, kCoarseWalls);
   std::vector<LayoutMatch> peaks;
   double least = kLeastScore;

@@ -15,7 +15,8 @@ constexpr size_t kMaxLooks = 100;
 
 }  // namespace
 
-bool Candidates::same(const Candidate& candidate, const SE3& T_map_odom, const SE3& T_odom_body, double at_m) {
+bool Candidates::same(const Candidate& candidate, const SE3& T_map_odom, const SE3& T_odom_body,
+                      double at_m) {
   const double since_m = at_m - candidate.seen_m;
   const SE3 d = (candidate.T_map_odom * T_odom_body).inverse() * (T_map_odom * T_odom_body);
   return d.translation.norm() <= kSame_m + kDrift_share * since_m &&

@@ -65,9 +65,9 @@ class Relocaliser::Impl {
     KeyframeId id;
     double walked_m = 0;
     SE3 T_odom_body;
-    SE3 T_first_body;                           // by the measurements alone
-    Matrix6d covariance = Matrix6d::Zero();     // of that, as steps that all err alike
-    std::optional<Place> place;                 // while it is on the newest path
+    SE3 T_first_body;                        // by the measurements alone
+    Matrix6d covariance = Matrix6d::Zero();  // of that, as steps that all err alike
+    std::optional<Place> place;              // while it is on the newest path
   };
   const Step& here() const { return path_.back(); }
 
@@ -143,9 +143,8 @@ class Relocaliser::Impl {
                     {m.at.position_map.x(), m.at.position_map.y(), anchor->T_map_body.translation.z()}});
     }
     for (const Candidate& c : candidates_.all()) lookAt(c, looker);
-    std::stable_sort(looker.looks.begin(), looker.looks.end(), [](const Look& a, const Look& b) {
-      return a.check.quality() > b.check.quality();
-    });
+    std::stable_sort(looker.looks.begin(), looker.looks.end(),
+                     [](const Look& a, const Look& b) { return a.check.quality() > b.check.quality(); });
     std::vector<Look> kept;
     for (const Look& l : looker.looks)
       if (std::all_of(kept.begin(), kept.end(), [&](const Look& k) {
@@ -165,8 +164,7 @@ class Relocaliser::Impl {
     void check(const KnownStorey& storey, const KnownPlace& anchor, const SE3& T_map_guess) {
       auto it = surroundings.find(&anchor);
       if (it == surroundings.end())
-        it = surroundings
-                 .emplace(&anchor, storey.surroundingsOf(anchor, owner.verification_.submap_radius_m))
+        it = surroundings.emplace(&anchor, storey.surroundingsOf(anchor, owner.verification_.submap_radius_m))
                  .first;
       Look look;
       look.anchor = anchor.place.id;
@@ -202,13 +200,13 @@ class Relocaliser::Impl {
     r.looks = static_cast<int>(found.looks.size());
     double best = 0;
     for (const Look& look : found.looks) {
-      const auto step = std::find_if(path_.begin(), path_.end(),
-                                     [&](const Step& s) { return s.id == look.keyframe; });
+      const auto step =
+          std::find_if(path_.begin(), path_.end(), [&](const Step& s) { return s.id == look.keyframe; });
       const SE3 T_body_first = step->T_first_body.inverse();
       // The inverse of what was measured from the first keyframe to this one.
       const Matrix6d Ad = se3Adjoint(step->T_first_body);
-      const Matrix6d covariance = composeCovariance(look.check.covariance, T_body_first,
-                                                    Ad * step->covariance * Ad.transpose());
+      const Matrix6d covariance =
+          composeCovariance(look.check.covariance, T_body_first, Ad * step->covariance * Ad.transpose());
       if (r.anchor.valid() && covariance.trace() >= best) continue;
       best = covariance.trace();
       r.anchor = look.anchor;

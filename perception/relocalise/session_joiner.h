@@ -35,9 +35,9 @@ struct SessionStart {
 };
 
 // Makes a session's messages the continuation of a map's: session, numbers, ids of keyframes and scans go on
-// after the map's last ones; stamps too, by one shift if the session's clock is not behind the map's; poses in
-// odom are moved into the map's odom, so that the way from the map's last keyframe to the first new one is a
-// step of the odometry; and that first one gets the measurement that ties it to the map. Messages that came
+// after the map's last ones; stamps too, by one shift if the session's clock is not behind the map's; poses
+// in odom are moved into the map's odom, so that the way from the map's last keyframe to the first new one is
+// a step of the odometry; and that first one gets the measurement that ties it to the map. Messages that came
 // before the robot was found are held back, and follow then, in order.
 class SessionJoiner {
  public:

@@ -48,8 +48,8 @@ void report(const RunRecord& record, const std::string& out_dir) {
               record.wall_s, record.realtime_factor, record.peak_rss_mib);
   if (const auto& map = record.continued)
     std::printf("continues a map of %lld keyframes, loaded in %.1f s; found beside %s after %.1f m, %.1f s\n",
-                static_cast<long long>(map->keyframes), map->load_s, map->matched.str().c_str(), map->walked_m,
-                map->after_s);
+                static_cast<long long>(map->keyframes), map->load_s, map->matched.str().c_str(),
+                map->walked_m, map->after_s);
   for (const auto& [stage, timing] : record.stages)
     std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   %lld steps\n", stage.c_str(), timing.p50_ms,
                 timing.p99_ms, static_cast<long long>(timing.count));
@@ -65,9 +65,8 @@ std::vector<std::string> stagesOf(const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  ReplayOptions options{arguments.log,       configOf(arguments), arguments.odometry,
-                        stagesOf(arguments), progressLine(),      arguments.record,
-                        arguments.map_dir,   arguments.out_dir};
+  ReplayOptions options{arguments.log,  configOf(arguments), arguments.odometry, stagesOf(arguments),
+                        progressLine(), arguments.record,    arguments.map_dir,  arguments.out_dir};
   Replay replay(std::move(options));
   replay.run();
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%60s\r", "");

@@ -11,9 +11,9 @@
 namespace sgraphs {
 namespace {
 
-constexpr const char* kChannels[] = {channels::kSession.name,        channels::kRoundSchedule.name,
-                                     channels::kKeyframe.name,       channels::kKeyframePlanes.name,
-                                     channels::kOdometry.name,       channels::kOdometryEnd.name};
+constexpr const char* kChannels[] = {channels::kSession.name,  channels::kRoundSchedule.name,
+                                     channels::kKeyframe.name, channels::kKeyframePlanes.name,
+                                     channels::kOdometry.name, channels::kOdometryEnd.name};
 
 // Every message of these begins with the same header: fingerprint, then session, boot, seq, utime. Decoding
 // all of it for the stamp alone would cost more than the rest of the writing.
@@ -81,7 +81,8 @@ EarlierMap::EarlierMap(const std::string& dir) : dir_(dir), path_(dir + "/" + kM
   const std::optional<LogEvent> first = reader.next();
   session_t session{};
   if (!first || first->channel != channels::kSession.name || !decode(first->bytes, session))
-    throw Error("map '" + path_ + "' does not begin with a SESSION of this program's messages: it is damaged, "
+    throw Error("map '" + path_ +
+                "' does not begin with a SESSION of this program's messages: it is damaged, "
                 "or of another version; replay its recording again");
   if (session.schema != kMessageSchema)
     throw Error("map '" + path_ + "' was written with message schema " + std::to_string(session.schema) +
@@ -98,7 +99,8 @@ void EarlierMap::read(const std::function<void(const LogEvent&, double share)>& 
     handler(*event, static_cast<double>(reader.position()) / static_cast<double>(reader.fileBytes()));
     last = event->channel;
   }
-  if (reader.skippedBytes() > 0) throw Error("map '" + path_ + "' holds bytes that belong to no event" + again);
+  if (reader.skippedBytes() > 0)
+    throw Error("map '" + path_ + "' holds bytes that belong to no event" + again);
   if (reader.truncated()) throw Error("map '" + path_ + "' ends in the middle of an event" + again);
   if (last != channels::kOdometryEnd.name)
     throw Error("map '" + path_ + "' ends before its session does" + again);

@@ -167,7 +167,8 @@ void Replay::run() {
     }
     feed(*event);
     if (options_.on_progress)
-      options_.on_progress({false, static_cast<double>(reader.position()) / static_cast<double>(reader.fileBytes()),
+      options_.on_progress({false,
+                            static_cast<double>(reader.position()) / static_cast<double>(reader.fileBytes()),
                             odometry_->duration().seconds(), watch.elapsedSeconds()});
   }
   if (reader.truncated())

@@ -19,8 +19,8 @@ namespace sgraphs {
 
 struct ReplayProgress {
   bool loading = false;  // of the earlier map; else of the log
-  double share = 0;     // of the log's bytes, 0 to 1
-  double sensor_s = 0;  // sensor time so far
+  double share = 0;      // of the log's bytes, 0 to 1
+  double sensor_s = 0;   // sensor time so far
   double wall_s = 0;
 };
 
@@ -30,8 +30,8 @@ struct ReplayOptions {
   std::string odometry;                  // "lidar", "encoder", "fused"; empty: as SESSION says
   std::vector<std::string> stages = {};  // that take part, in place of SESSION's; empty: as SESSION says
   std::function<void(const ReplayProgress&)> on_progress = {};  // after each event; may be empty
-  std::string record = {};  // log that every channel is written to, raw and derived; empty: none
-  std::string map = {};     // folder of an earlier run whose map is continued; empty: a map of its own
+  std::string record = {};   // log that every channel is written to, raw and derived; empty: none
+  std::string map = {};      // folder of an earlier run whose map is continued; empty: a map of its own
   std::string out_dir = {};  // folder that gets map.lcmlog; empty: none
 };
 
@@ -44,8 +44,8 @@ struct ReplayOptions {
 // RelocaliseNode stands between the two until the robot is found.
 class Replay {
  public:
-  // Loads the earlier map, if one is to be continued. Throws Error if it or the log cannot be read, or the log
-  // holds no SESSION of this version.
+  // Loads the earlier map, if one is to be continued. Throws Error if it or the log cannot be read, or the
+  // log holds no SESSION of this version.
   explicit Replay(ReplayOptions options);
 
   // Works through the log. Throws Error if it holds no scan that can be used, or if the robot was not found

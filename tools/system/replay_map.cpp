@@ -38,12 +38,14 @@ void Replay::loadMap() {
   const std::string config = digestOf(options_.config);
   warnings_.push_back(
       config != earlier_->configDigest()
-          ? fmt::format("{} was made with another configuration (config_digest {:.12}, now {:.12}): it is made "
-                        "again with this one",
-                        dir, earlier_->configDigest(), config)
-          : fmt::format("{} comes out otherwise than its summary.json says (graph_digest {:.12}, now {:.12}): "
-                        "it was made by another version ({}), with other --layers, or was damaged",
-                        dir, earlier_->graphDigest(), loaded_.graph_digest, earlier_->version()));
+          ? fmt::format(
+                "{} was made with another configuration (config_digest {:.12}, now {:.12}): it is made "
+                "again with this one",
+                dir, earlier_->configDigest(), config)
+          : fmt::format(
+                "{} comes out otherwise than its summary.json says (graph_digest {:.12}, now {:.12}): "
+                "it was made by another version ({}), with other --layers, or was damaged",
+                dir, earlier_->graphDigest(), loaded_.graph_digest, earlier_->version()));
 }
 
 // A session of the map is over: the run that it was ended with these rounds.
@@ -75,7 +77,8 @@ void Replay::connectRelocaliser() {
     if (node.keyframe) views.push_back({node.keyframe.get(), node.T_map_body, node.floor});
   relocaliser_ = std::make_shared<Relocaliser>(options_.config.relocalise, options_.config.loops, views);
   relocalise_.emplace(
-      session_bus_, bus_, mapEnd(), [r = relocaliser_](const Keyframe& keyframe) { return r->step(keyframe); },
+      session_bus_, bus_, mapEnd(),
+      [r = relocaliser_](const Keyframe& keyframe) { return r->step(keyframe); },
       [r = relocaliser_] { return r->lost(); });
   // Until the robot is found nothing is written of its session.
   if (map_log_) map_log_->setShift([this] { return relocalise_->joiner().shift(); });
@@ -83,10 +86,11 @@ void Replay::connectRelocaliser() {
 
 void Replay::requireFound() const {
   if (relocalise_->found() || relocaliser_->walked_m() == 0) return;
-  throw Error(fmt::format(
-      "the robot was not found in map '{}' within {:.1f} m of walking ({}): walk on through places that the map "
-      "knows, or replay the log without --map for a map of its own",
-      earlier_->dir(), relocaliser_->walked_m(), relocaliser_->describe()));
+  throw Error(
+      fmt::format("the robot was not found in map '{}' within {:.1f} m of walking ({}): walk on through "
+                  "places that the map "
+                  "knows, or replay the log without --map for a map of its own",
+                  earlier_->dir(), relocaliser_->walked_m(), relocaliser_->describe()));
 }
 
 RunRecord::Continued Replay::continued() const {

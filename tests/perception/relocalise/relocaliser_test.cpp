@@ -63,7 +63,8 @@ std::optional<Relocalisation> find(const std::vector<MapView>& map, const std::v
 TEST(RelocaliserTest, AStartInAnotherRoomWithAnotherHeadingIsFoundWithinTenMetres) {
   const LoopWalk first = test::walkThrough(office(), 3);
   const LoopWalk second = test::walkThrough(
-      walking(office(), {{8.2, 6.4}, {8.2, 5.2}, {7.0, 5.8}, {5.0, 5.8}, {5.0, 2.2}, {7.2, 2.2}}, kTurn_rad), 4);
+      walking(office(), {{8.2, 6.4}, {8.2, 5.2}, {7.0, 5.8}, {5.0, 5.8}, {5.0, 2.2}, {7.2, 2.2}}, kTurn_rad),
+      4);
   const auto found = find(asMap(first), asSession(second));
   ASSERT_TRUE(found);
   EXPECT_LE(found->walked_m, 10.0);
@@ -118,7 +119,8 @@ TEST(RelocaliserTest, StoreysThatAreAlikeAreNotTold) {
   }
   for (const MapView& view : asMap(above, FloorId{1})) map.push_back(view);
   const LoopWalk second = test::walkThrough(
-      walking(office(), {{8.2, 6.4}, {8.2, 5.2}, {7.0, 5.8}, {5.0, 5.8}, {5.0, 2.2}, {7.2, 2.2}}, kTurn_rad), 4);
+      walking(office(), {{8.2, 6.4}, {8.2, 5.2}, {7.0, 5.8}, {5.0, 5.8}, {5.0, 2.2}, {7.2, 2.2}}, kTurn_rad),
+      4);
   EXPECT_FALSE(find(map, asSession(second)));
 }
 
