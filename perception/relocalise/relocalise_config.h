@@ -11,7 +11,7 @@ struct RelocaliseConfig {
   int lead = 3;
   double min_span_m = 3.0;
   int max_matches = 24;
-  double give_up_m = 1000.0;
+  double give_up_m = 300.0;
 
   void visit(ConfigVisitor& v);
 };

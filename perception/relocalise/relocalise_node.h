@@ -28,6 +28,8 @@ class RelocaliseNode {
     Duration after;  // sensor time from the session's first keyframe to the look that found it
   };
   const std::optional<Found>& found() const { return found_; }
+  // The session had a keyframe.
+  bool heard() const { return first_.has_value(); }
   const SessionJoiner& joiner() const { return joiner_; }
   const LatencyHistogram& stepLatency() const { return latency_; }
   const InputGate& gate() const { return gate_; }

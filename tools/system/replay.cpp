@@ -179,7 +179,10 @@ void Replay::run() {
                         "' belong to no event and were skipped");
   if (!odometry_->done()) endWithoutStreamEnd();
   others_->finish();
-  if (relocalise_) requireFound();
+  if (relocalise_) {
+    requireScans();
+    requireFound();
+  }
   // A stage of this process that gives no answer is a fault of ours, and no reason to lose what there is.
   if (!backend_->done()) backend_->finish("a stage did not answer every round");
   wall_s_ = watch.elapsedSeconds();
@@ -199,7 +202,7 @@ void Replay::endWithoutStreamEnd() {
 }
 
 void Replay::requireScans() const {
-  if (backend_->rounds() > 0) return;
+  if (relocalise_ ? relocalise_->heard() : backend_->rounds() > 0) return;
   std::string why = describeRefused(*counts_);
   for (const auto& [kind, n] : odometry_->oddities())
     why += (why.empty() ? "" : "; ") + std::to_string(n) + " " + kind;

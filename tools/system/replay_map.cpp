@@ -85,7 +85,7 @@ void Replay::connectRelocaliser() {
 }
 
 void Replay::requireFound() const {
-  if (relocalise_->found() || relocaliser_->walked_m() == 0) return;
+  if (relocalise_->found()) return;
   throw Error(
       fmt::format("the robot was not found in map '{}' within {:.1f} m of walking ({}): walk on through "
                   "places that the map "
