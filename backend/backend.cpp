@@ -166,10 +166,9 @@ class Backend::Impl {
     node.id = keyframe.id;
     node.time = keyframe.time;
     node.T_odom_body = keyframe.T_odom_body;
-    // The storey of the start is f0; that of a later keyframe is the last one's until it is told otherwise.
-    node.floor = graph().keyframes.empty() ? FloorId{0} : graph().keyframes.rbegin()->second.floor;
-    if (node.floor.valid()) builder_.addFloor(node.floor);
     if (graph().keyframes.empty()) {
+      node.floor = FloorId{0};
+      builder_.addFloor(node.floor);
       node.T_map_body.rotation =
           admission.has_up ? levelledRotation(keyframe.up_body) : Eigen::Quaterniond::Identity();
       node.keyframe = std::make_shared<const Keyframe>(std::move(keyframe));
@@ -177,12 +176,18 @@ class Backend::Impl {
       return;
     }
     const RelativePose z = anchorOf(keyframe.id, admission.relative_poses);
+    const KeyframeId last = graph().keyframes.rbegin()->first;
     const KeyframeNode& from = graph().keyframes.at(z.from);
+    // That of the start is f0; a later keyframe is on the storey of the one it is measured from until it is
+    // told otherwise.
+    node.floor = from.floor;
+    if (node.floor.valid()) builder_.addFloor(node.floor);
     node.T_map_body = from.T_map_body * z.T_from_to;
     // By that one measurement: further factors could only lower it.
     node.covariance = composeCovariance(from.covariance, z.T_from_to, z.covariance);
     node.keyframe = std::make_shared<const Keyframe>(std::move(keyframe));
     builder_.addKeyframe(std::move(node));
+    if (z.from != last) planes_.carriedTo(covariancesAlongBestWay(graph(), z.from));
     planes_.advance(z);
     loops_.advance(z);
   }

@@ -190,6 +190,7 @@ void BackendNode::finishIfAllEnded() {
 
 void BackendNode::advance() {
   while (session_ && !pending_.empty() && workOff(pending_.front())) pending_.pop_front();
+  if (resting_ && pending_.empty()) endRest();
   if (ending_ && (pending_.empty() || !session_ || forced_)) endRun();
 }
 
@@ -396,22 +397,36 @@ void BackendNode::finish(const std::string& why_not) {
   advance();
 }
 
-// Idle rounds until rooms and poses have come to rest.
-void BackendNode::endRun() {
-  if (done() || (!workOffKeyframesLeft() && !forced_)) return;
-  const Time end = scans_.empty() ? last_round_ : scans_.back().time;
+// Idle rounds until rooms and poses have come to rest. False if one has to wait.
+bool BackendNode::finalRounds(Time end) {
   const int quiet = takesPart("rooms") ? kQuietRounds : 1;
   while (rounds_ > 0 && final_rounds_ < kMaxFinalRounds && quiet_rounds_ < quiet) {
-    if (!idleRound(end)) {
-      if (!forced_) return;
-      break;  // a recorded schedule asks for what will not come
-    }
+    // Forced: a recorded schedule asks for what will not come.
+    if (!idleRound(end)) return forced_;
     ++final_rounds_;
     const bool changed = !newest_round_.changed.empty() || !newest_round_.changed_planes.empty() ||
                          newest_round_.changed_rooms || feedback_.searching();
     quiet_rounds_ = changed ? 0 : quiet_rounds_ + 1;
   }
-  conclude(end);
+  return true;
+}
+
+void BackendNode::endRun() {
+  if (done() || (!workOffKeyframesLeft() && !forced_)) return;
+  const Time end = scans_.empty() ? last_round_ : scans_.back().time;
+  if (finalRounds(end)) conclude(end);
+}
+
+void BackendNode::rest() {
+  resting_ = input_ended_ = true;
+  advance();
+}
+
+void BackendNode::endRest() {
+  if (!workOffKeyframesLeft()) return;
+  if (!finalRounds(scans_.empty() ? last_round_ : scans_.back().time)) return;
+  resting_ = input_ended_ = false;
+  final_rounds_ = quiet_rounds_ = 0;
 }
 
 void BackendNode::conclude(Time end) {

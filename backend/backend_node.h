@@ -51,6 +51,13 @@ class BackendNode {
   // anything, runs the final rounds, publishes RUN_RESULT. `why_not`: why another run may differ; empty if it
   // may not.
   void finish(const std::string& why_not);
+  // Brings the map to rest as the end of a run does, with final rounds, and goes on: what comes next is of
+  // another session. As many of the bus's messages later as the stages' answers take, resting() is over.
+  void rest();
+  bool resting() const { return resting_; }
+  // Of the newest round.
+  const std::string& graphDigest() const { return newest_round_.graph_digest; }
+  const SE3& T_map_odom() const { return newest_round_.T_map_odom; }
   // The round whose FREE_SPACE, ROOMS and LOOP_CLOSURES the next one waits for; -1: none. What a datagram
   // lost is sent by nobody again: the caller, who has a clock, lets the round go on without.
   int64_t awaitedRound() const;
@@ -105,7 +112,9 @@ class BackendNode {
   bool workOff(const OdometryEstimate& estimate);
   bool workOffKeyframesLeft();
   bool idleRound(Time time);
+  bool finalRounds(Time end);
   void endRun();
+  void endRest();
   void conclude(Time end);
   bool keyframeRound(const OdometryEstimate* estimate, bool overdue);
   std::optional<Keyframe> joinedKeyframe(const OdometryEstimate* estimate);
@@ -152,6 +161,7 @@ class BackendNode {
   bool input_ended_ = false;
   std::optional<std::string> ending_;  // the input is complete; why another run may differ
   bool forced_ = false;                // nothing is waited for any more
+  bool resting_ = false;               // the end of a session that is not the run's
   int final_rounds_ = 0;
   int quiet_rounds_ = 0;  // final rounds in a row that changed nothing
   bool stream_ended_ = false;

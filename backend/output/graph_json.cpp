@@ -28,12 +28,14 @@ Json vectorJson(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json keyframeJson(const KeyframeNode& node, const std::map<KeyframeId, Matrix6d>& covariances) {
+Json keyframeJson(const KeyframeNode& node, const std::map<KeyframeId, Matrix6d>& covariances,
+                  std::span<const SessionClock> sessions) {
   Json json = {{"id", node.id.str()},
                {"layer", "keyframes"},
-               {"utime", node.time.us},
+               {"utime", recordedTime(sessions, node.time).us},
                {"T_map_body", transformJson(node.T_map_body)},
                {"floor", floorOf(node).str()}};
+  if (sessions.size() > 1) json["session"] = sessionAt(sessions, node.time);
   const auto covariance = covariances.find(node.id);
   if (covariance != covariances.end()) json["covariance"] = upperTriangle(covariance->second);
   return json;
@@ -90,21 +92,23 @@ Json linksJson(const SituationalGraph& graph) {
 }  // namespace
 
 std::string graphJson(const SituationalGraph& graph, const std::map<FloorId, FloorNode>& floors,
-                      const std::map<KeyframeId, Matrix6d>& keyframe_covariances) {
+                      const std::map<KeyframeId, Matrix6d>& keyframe_covariances,
+                      std::span<const SessionClock> sessions) {
   Json json;
   json["schema"] = "sgraphs/1";
   json["directed"] = false;
   json["multigraph"] = true;
   json["graph"] = {{"up", vectorJson(graph.up_map)}};
   Json& nodes = json["nodes"] = Json::array();
-  for (const auto& [id, node] : graph.keyframes) nodes.push_back(keyframeJson(node, keyframe_covariances));
+  for (const auto& [id, node] : graph.keyframes)
+    nodes.push_back(keyframeJson(node, keyframe_covariances, sessions));
   for (const auto& [id, plane] : graph.planes) nodes.push_back(wallJson(plane));
   for (const auto& [id, floor] : floors)
     nodes.push_back({{"id", id.str()},
                      {"layer", "floors"},
                      {"center", {floor.center_map.x(), floor.center_map.y()}},
                      {"z", floor.has_height ? Json(floor.z_m) : Json(nullptr)}});
-  addUpperLayerNodes(graph, nodes);
+  addUpperLayerNodes(graph, sessions, nodes);
   json["links"] = linksJson(graph);
   addUpperLayerLinks(graph, json["links"]);
   // One node or link per line: small enough to read, and to compare with diff.

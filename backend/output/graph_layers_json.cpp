@@ -33,20 +33,22 @@ FloorId storeyOf(FloorId floor) {
   return floor.valid() ? floor : FloorId{0};
 }
 
-Json roomJson(const SituationalGraph& graph, const RoomNode& room) {
+Json roomJson(const SituationalGraph& graph, const RoomNode& room, std::span<const SessionClock> sessions) {
   Json polygon = Json::array(), walls = Json::array();
   for (const RoomCorner& corner : room.seen.polygon)
     polygon.push_back({corner.position_map.x(), corner.position_map.y()});
   for (const PlaneId wall : wallsOf(graph, room)) walls.push_back(wall.str());
-  return {{"id", room.id.str()},
-          {"layer", "rooms"},
-          {"kind", kindName(room.seen.kind)},
-          {"center", {room.center_map.x(), room.center_map.y()}},
-          {"polygon", std::move(polygon)},
-          {"area", room.seen.area_m2},
-          {"walls", std::move(walls)},
-          {"floor", storeyOf(room.seen.floor).str()},
-          {"utime", room.seen.accepted.us}};
+  Json json = {{"id", room.id.str()},
+               {"layer", "rooms"},
+               {"kind", kindName(room.seen.kind)},
+               {"center", {room.center_map.x(), room.center_map.y()}},
+               {"polygon", std::move(polygon)},
+               {"area", room.seen.area_m2},
+               {"walls", std::move(walls)},
+               {"floor", storeyOf(room.seen.floor).str()},
+               {"utime", recordedTime(sessions, room.seen.accepted).us}};
+  if (sessions.size() > 1) json["session"] = sessionAt(sessions, room.seen.accepted);
+  return json;
 }
 
 Json vertexJson(const FreeSpaceVertex& vertex) {
@@ -86,8 +88,8 @@ void addDoorway(const SituationalGraph& graph, const Doorway& doorway, Json& lin
 
 }  // namespace
 
-void addUpperLayerNodes(const SituationalGraph& graph, Json& nodes) {
-  for (const auto& [id, room] : graph.rooms) nodes.push_back(roomJson(graph, room));
+void addUpperLayerNodes(const SituationalGraph& graph, std::span<const SessionClock> sessions, Json& nodes) {
+  for (const auto& [id, room] : graph.rooms) nodes.push_back(roomJson(graph, room, sessions));
   if (graph.free_space)
     for (const auto& [id, vertex] : graph.free_space->vertices) nodes.push_back(vertexJson(vertex));
 }

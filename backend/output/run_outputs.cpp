@@ -44,21 +44,39 @@ void writeStorey(const RunRecord& record, const FloorNode& floor, const std::vec
   writeFile(out_dir + "/occupancy_" + name + ".yaml", occupancyYaml(grid, image));
 }
 
+// Of this run alone, with its recording's stamps.
+void writeTrajectories(const RunRecord& record, const std::string& out_dir) {
+  std::vector<StampedPose> dense = denseTrajectory(*record.graph, record.scans),
+                           keyframes = keyframeTrajectory(*record.graph),
+                           odometry = odometryTrajectory(record.scans);
+  if (const auto& continued = record.continued) {
+    const SessionClock& own = continued->sessions.back();
+    std::erase_if(keyframes, [&](const StampedPose& p) { return p.time < own.begin; });
+    const SE3 T_odom_mapodom = continued->T_mapodom_odom.inverse();
+    for (StampedPose& p : odometry) p.pose = T_odom_mapodom * p.pose;
+    for (std::vector<StampedPose>* poses : {&dense, &keyframes, &odometry})
+      for (StampedPose& p : *poses) p.time = p.time - own.shift;
+  }
+  writeTum(out_dir + "/trajectory.tum", dense);
+  writeTum(out_dir + "/keyframes.tum", keyframes);
+  writeTum(out_dir + "/odometry.tum", odometry);
+}
+
 }  // namespace
 
 void writeOutputs(const RunRecord& record, const std::string& out_dir) {
   if (!record.graph) throw std::logic_error("writeOutputs: the record has no graph");
   const SituationalGraph& graph = *record.graph;
   createFolder(out_dir);
-  writeTum(out_dir + "/trajectory.tum", denseTrajectory(graph, record.scans));
-  writeTum(out_dir + "/keyframes.tum", keyframeTrajectory(graph));
-  writeTum(out_dir + "/odometry.tum", odometryTrajectory(record.scans));
+  writeTrajectories(record, out_dir);
 
   std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
   dropWhatMovedAway(graph, map);
   const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);
   writeMap(map, out_dir + "/map.ply");
-  writeFile(out_dir + "/graph.json", graphJson(graph, floors, record.keyframe_covariances));
+  writeFile(out_dir + "/graph.json",
+            graphJson(graph, floors, record.keyframe_covariances,
+                      record.continued ? record.continued->sessions : std::vector<SessionClock>()));
   writeFile(out_dir + "/graph.g2o", graphG2o(graph));
   if (!graph.keyframes.empty())
     for (const auto& [id, floor] : floors) writeStorey(record, floor, map, out_dir);

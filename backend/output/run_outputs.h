@@ -8,6 +8,7 @@
 
 #include "backend/backend.h"
 #include "backend/graph/situational_graph.h"
+#include "backend/output/session_clock.h"
 #include "common/types/keyframe.h"
 
 namespace sgraphs {
@@ -22,7 +23,7 @@ struct StageTiming {
 // What a run leaves behind; `graph` must outlive the record.
 struct RunRecord {
   const SituationalGraph* graph = nullptr;
-  std::vector<OdometryEstimate> scans;  // every scan, in order of time
+  std::vector<OdometryEstimate> scans;  // every scan of this run, in order of time
   std::map<std::string, FactorStatistics> factors;
   std::map<KeyframeId, Matrix6d> keyframe_covariances;  // of T_map_body, tangent of body; may hold a part
 
@@ -44,6 +45,22 @@ struct RunRecord {
     double offset_ms = 0, sigma_ms = 0, in_force_ms = 0;
   };
   std::optional<LegsClock> legs_clock;
+
+  // Where the map of an earlier run was continued: stamps of scans and keyframes are then by the map's clock,
+  // and poses in odom in that of the map.
+  struct Continued {
+    std::string graph_digest;            // of the earlier run, as its summary says
+    bool same = true;                    // the loaded map has it
+    int64_t keyframes = 0;               // loaded
+    double load_s = 0;                   // wall time
+    double walked_m = 0;                 // by the robot, until it was found
+    double after_s = 0;                  // sensor time, likewise
+    int64_t looks = 0;                   // that prove it
+    KeyframeId matched;                  // keyframe of the map beside which it was found
+    SE3 T_mapodom_odom;                  // this run's own odom in that of the map
+    std::vector<SessionClock> sessions;  // all, this run's last
+  };
+  std::optional<Continued> continued;
 };
 
 // Writes every file of OUT (contract.md): trajectory.tum, keyframes.tum,

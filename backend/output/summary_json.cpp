@@ -59,6 +59,16 @@ std::string summaryJson(const RunRecord& record) {
   if (const auto& clock = record.legs_clock)
     json["legs_clock"] = {
         {"offset_ms", clock->offset_ms}, {"sigma_ms", clock->sigma_ms}, {"in_force_ms", clock->in_force_ms}};
+  if (const auto& map = record.continued)
+    json["map"] = {{"graph_digest", map->graph_digest},
+                   {"same_when_loaded", map->same},
+                   {"keyframes", map->keyframes},
+                   {"sessions", map->sessions.size() - 1},
+                   {"load_s", map->load_s},
+                   {"found_after_m", map->walked_m},
+                   {"found_after_s", map->after_s},
+                   {"looks", map->looks},
+                   {"matched", map->matched.str()}};
   return json.dump(2) + "\n";
 }
 

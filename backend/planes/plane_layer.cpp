@@ -80,6 +80,14 @@ void PlaneLayer::advance(const RelativePose& z) {
   }
 }
 
+void PlaneLayer::carriedTo(const std::map<KeyframeId, Matrix6d>& there) {
+  const auto age = [&](Track& track) {
+    if (const auto way = there.find(track.last_seen); way != there.end()) track.drift = way->second;
+  };
+  for (auto& [id, track] : tracks_) age(track);
+  for (Unmapped& unmapped : unmapped_) age(unmapped.track);
+}
+
 PlaneLayer::Known PlaneLayer::candidates(FloorId floor) const {
   Known known;
   size_t index = 0;

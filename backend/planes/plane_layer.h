@@ -22,6 +22,9 @@ class PlaneLayer {
   // The robot has moved on: what it knows of the planes' places relative to itself has grown older.
   // z: the measurement of the new keyframe's pose from the one before.
   void advance(const RelativePose& z);
+  // The robot is not where it was last but elsewhere in the map: what is measured next is measured from a
+  // keyframe there. `there`: how well the others are known from that one (tangent of its body).
+  void carriedTo(const std::map<KeyframeId, Matrix6d>& there);
 
   // Associates what the newest keyframe (in the graph, at its predicted pose) sees.
   struct Sighting {

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "perception/loops/place_walls.h"
+
 namespace sgraphs {
 namespace {
 
-constexpr double kQueryReach_m = 12.0;  // walls around the robot that are laid over the older ones
-constexpr size_t kMaxWalls = 300;
-constexpr float kUprightNormal = 0.3F;
 constexpr double kAnchorReach_m = 3.0;   // from a match to the old place that stands for it
 constexpr size_t kMaxSurroundings = 14;  // old places registered against, the nearest
 constexpr double kDistortion_m = 3.0;    // of path on which a cloud's surroundings bend
@@ -21,21 +20,6 @@ double across(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).head<2>().norm();
 }
 
-// Upright patches from above, in the frame of the poses.
-std::vector<WallPoint> wallsOf(const std::vector<PlacedPlace>& places) {
-  std::vector<WallPoint> out;
-  for (const PlacedPlace& p : places) {
-    const Eigen::Matrix3f R = p.T_frame_body.matrix3().cast<float>();
-    const Eigen::Vector3f t = p.T_frame_body.translation.cast<float>();
-    for (const PackedPatch& patch : p.place->patches) {
-      const Eigen::Vector3f n = R * patch.normal();
-      if (std::abs(n.z()) > kUprightNormal) continue;
-      out.push_back({(R * patch.mean() + t).head<2>(), std::atan2(n.y(), n.x())});
-    }
-  }
-  return out;
-}
-
 // The newest places in the frame of the newest one's body.
 std::vector<PlacedPlace> queryOf(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path,
                                  double path_m) {
@@ -43,17 +27,6 @@ std::vector<PlacedPlace> queryOf(KeyframeId keyframe, const PlaceMemory& memory,
   const SE3 T_newest_odom = path.odometryOf(keyframe).inverse();
   for (const Place* place : memory.newestBefore(keyframe, path_m, path))
     out.push_back({place, T_newest_odom * path.odometryOf(place->id)});
-  return out;
-}
-
-// The query's walls about its body, turned as the map has it.
-std::vector<WallPoint> queryWalls(std::vector<PlacedPlace> query, const SE3& T_map_body) {
-  for (PlacedPlace& p : query) p.T_frame_body = SE3(T_map_body.rotation, {0, 0, 0}) * p.T_frame_body;
-  std::vector<WallPoint> near, out;
-  for (const WallPoint& w : wallsOf(query))
-    if (w.position.norm() < kQueryReach_m) near.push_back(w);
-  const size_t n = std::min(near.size(), kMaxWalls);
-  for (size_t i = 0; i < n; ++i) out.push_back(near[i * near.size() / n]);
   return out;
 }
 
@@ -147,7 +120,7 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
 
   const std::vector<PlacedPlace> query = queryOf(keyframe, memory, path, config_.verification.query_path_m);
   std::map<KeyframeId, OldSurroundings> surroundings;
-  for (const LayoutMatch& match : layout.search(queryWalls(query, T_map_body), where)) {
+  for (const LayoutMatch& match : layout.search(wallsAround(query, T_map_body.rotation), where)) {
     const Anchor* anchor = nearest(anchors, match.position_map, kAnchorReach_m);
     if (!anchor || (match.position_map - where.centre_map).norm() > anchor->gate.radius_m ||
         std::abs(match.yaw_rad) > anchor->gate.yaw_rad + 0.05)

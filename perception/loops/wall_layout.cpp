@@ -78,6 +78,18 @@ std::vector<Turned> turned(const std::vector<WallPoint>& query, double yaw_rad) 
   return out;
 }
 
+// A grid about the centre, row by row.
+std::vector<Eigen::Vector2d> discOf(const LayoutSearch& where) {
+  const int steps = static_cast<int>(std::ceil(where.radius_m / kCoarseStep_m));
+  std::vector<Eigen::Vector2d> out;
+  for (int iy = -steps; iy <= steps; ++iy)
+    for (int ix = -steps; ix <= steps; ++ix) {
+      const Eigen::Vector2d d(ix * kCoarseStep_m, iy * kCoarseStep_m);
+      if (d.norm() <= where.radius_m) out.emplace_back(where.centre_map + d);
+    }
+  return out;
+}
+
 }  // namespace
 
 WallLayout::WallLayout(const Eigen::Vector2d& centre_map, double half_size_m)
@@ -108,29 +120,36 @@ const WallLayout::Mask* WallLayout::at(float x_m, float y_m) const {
 std::vector<LayoutMatch> WallLayout::search(const std::vector<WallPoint>& query,
                                             const LayoutSearch& where) const {
   if (query.empty()) return {};
-  const auto score = [&](const std::vector<Turned>& walls, const Eigen::Vector2d& p, bool exact) {
+  // Share of the walls that are met; less than `least` is told as 0.
+  const auto score = [&](const std::vector<Turned>& walls, const Eigen::Vector2d& p, bool exact,
+                         double least) {
     const Eigen::Vector2f t = p.cast<float>();
+    const auto n = static_cast<double>(walls.size());
+    int may_miss = static_cast<int>(n * (1.0 - least)) + 1;
     int hits = 0;
     for (const Turned& w : walls) {
       const Mask* mask = at(t.x() + w.position.x(), t.y() + w.position.y());
-      if (mask) hits += ((exact ? mask->exact : mask->near) >> w.heading) & 1;
+      const int hit = mask ? ((exact ? mask->exact : mask->near) >> w.heading) & 1 : 0;
+      hits += hit;
+      if (hit == 0 && --may_miss < 0) return 0.0;
     }
-    return static_cast<double>(hits) / static_cast<double>(walls.size());
+    return static_cast<double>(hits) / n;
   };
   const int turns = static_cast<int>(std::ceil(where.yaw_range_rad / kCoarseStep_rad));
-  const int steps = static_cast<int>(std::ceil(where.radius_m / kCoarseStep_m));
+  const std::vector<Eigen::Vector2d> positions =
+      where.positions_map.empty() ? discOf(where) : where.positions_map;
   const std::vector<WallPoint> few = thinned(query, kCoarseWalls);
   std::vector<LayoutMatch> peaks;
+  double least = kLeastScore;
   for (int k = -turns; k <= turns; ++k) {
     const double yaw = where.yaw_rad + k * kCoarseStep_rad;
     const std::vector<Turned> walls = turned(few, yaw);
-    for (int iy = -steps; iy <= steps; ++iy)
-      for (int ix = -steps; ix <= steps; ++ix) {
-        const Eigen::Vector2d d(ix * kCoarseStep_m, iy * kCoarseStep_m);
-        if (d.norm() > where.radius_m) continue;
-        const double s = score(walls, where.centre_map + d, false);
-        if (s >= kLeastScore) peaks.push_back({where.centre_map + d, yaw, s});
-      }
+    for (const Eigen::Vector2d& position : positions) {
+      const double s = score(walls, position, false, least);
+      if (s < least) continue;
+      peaks.push_back({position, yaw, s});
+      least = std::max(least, kFarBelow * s);
+    }
   }
   std::vector<LayoutMatch> refined;
   for (const LayoutMatch& peak : distinctOf(std::move(peaks), kMaxPeaks)) {
@@ -142,7 +161,7 @@ std::vector<LayoutMatch> WallLayout::search(const std::vector<WallPoint>& query,
       for (int iy = -kFineSteps; iy <= kFineSteps; ++iy)
         for (int ix = -kFineSteps; ix <= kFineSteps; ++ix) {
           const Eigen::Vector2d p = peak.position_map + kFineStep_m * Eigen::Vector2d(ix, iy);
-          const double s = score(walls, p, true);
+          const double s = score(walls, p, true, 0);
           if (s > best.score) best = {p, yaw, s};
         }
     }

@@ -25,6 +25,8 @@ struct LayoutSearch {
   double radius_m = 1;
   double yaw_range_rad = 0.1;  // to either side; pi: all headings
   int max_matches = 6;
+  // Where the query may stand, in place of the disc about the centre; empty: anywhere in it.
+  std::vector<Eigen::Vector2d> positions_map = {};
 };
 
 // The walls about an old place from above, in which a newer look at walls is sought: the appearance that

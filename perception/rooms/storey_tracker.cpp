@@ -18,6 +18,9 @@ constexpr double kRampArrival_m = 6.0;
 // Storeys lie further apart; lower levels are landings and platforms, until the robot walks about on them.
 constexpr double kStorey_m = 1.8;
 constexpr double kPlatform_m = 5.0;
+// Nobody climbs as much from one keyframe to the next; and no slope is fitted across.
+constexpr double kCarried_m = 1.0;
+constexpr double kCarriedPath_m = 100.0;
 
 }  // namespace
 
@@ -49,7 +52,10 @@ void StoreyTracker::add(const MapKeyframe& keyframe) {
     current_ = FloorId{next_floor_++};
     heights_[current_] = keyframe.T_map_body.translation.z();
   }
-  if (climbing_)
+  const size_t n = steps_.size();
+  if (n > 1 && std::abs(steps_[n - 1].z_m - steps_[n - 2].z_m) > kCarried_m)
+    onCarried();
+  else if (climbing_)
     onClimb();
   else
     onStorey();
@@ -76,6 +82,27 @@ void StoreyTracker::onStorey() {
   for (size_t i = climb_begin_; i < steps_.size(); ++i) assign(steps_[i].id, {});
 }
 
+void StoreyTracker::onCarried() {
+  steps_.back().path_m += kCarriedPath_m;
+  arrived_ = climb_begin_ = steps_.size() - 1;
+  const FloorId floor = nearestTo(steps_.back().z_m);
+  climbing_ = std::abs(heights_.at(floor) - steps_.back().z_m) > config_.same_storey_m;
+  arrival_m_ = kArrival_m;
+  if (!climbing_) current_ = floor;
+  assign(steps_.back().id, climbing_ ? FloorId{} : floor);
+}
+
+FloorId StoreyTracker::nearestTo(double z_m) const {
+  FloorId nearest;
+  double gap = 0;
+  for (const auto& [floor, z] : heights_)
+    if (!nearest.valid() || std::abs(z - z_m) < gap) {
+      nearest = floor;
+      gap = std::abs(z - z_m);
+    }
+  return nearest;
+}
+
 void StoreyTracker::onClimb() {
   const Step& now = steps_.back();
   assign(now.id, {});
@@ -83,13 +110,8 @@ void StoreyTracker::onClimb() {
   while (first > climb_begin_ && std::abs(steps_[first - 1].z_m - now.z_m) < kLevel_m) --first;
   const double level_m = now.path_m - steps_[first].path_m;
   if (level_m < arrival_m_) return;
-  FloorId nearest;
-  double gap = 0;
-  for (const auto& [floor, z] : heights_)
-    if (!nearest.valid() || std::abs(z - now.z_m) < gap) {
-      nearest = floor;
-      gap = std::abs(z - now.z_m);
-    }
+  const FloorId nearest = nearestTo(now.z_m);
+  const double gap = std::abs(heights_.at(nearest) - now.z_m);
   if (gap <= config_.same_storey_m) {
     arrive(nearest, first);
   } else if (gap >= kStorey_m || level_m >= kPlatform_m) {

@@ -15,7 +15,8 @@ struct StoreyConfig {
 
 // Which storey each keyframe stands on, from the heights along the path: a climb ends where the robot has
 // walked level again, on a storey that is known at this height, or on a new one. Stairs and ramps are climbs.
-// A lift shows no motion, so nothing changes in it.
+// A lift shows no motion, so nothing changes in it. A robot that is carried to another height, between two
+// sessions, is on the storey of that height.
 class StoreyTracker {
  public:
   explicit StoreyTracker(const StoreyConfig& config) : config_(config) {}
@@ -37,9 +38,11 @@ class StoreyTracker {
   void add(const MapKeyframe& keyframe);
   void onStorey();
   void onClimb();
+  void onCarried();
   void arrive(FloorId floor, size_t first);
   double slope(size_t first) const;
   size_t firstWithin(double path_m) const;
+  FloorId nearestTo(double z_m) const;
   void assign(KeyframeId keyframe, FloorId floor);
   void measureHeights(const std::map<KeyframeId, MapKeyframe>& keyframes);
 

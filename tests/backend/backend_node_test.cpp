@@ -236,6 +236,38 @@ TEST_F(BackendNodeTest, FinalRoundsStopAfterFive) {
   EXPECT_EQ(busy->idle_rounds, BackendNode::kMaxFinalRounds);
 }
 
+// The end of an earlier session of a map: what it ended with is done again, and the run goes on.
+TEST_F(BackendNodeTest, AtRestItIsWhereARunEndsAndGoesOn) {
+  std::vector<Sent> stream = odometryStream(7);
+  const std::string at_end = digestOf(stream);
+  const Sent end = stream.back();
+  ASSERT_EQ(end.channel, "ODOMETRY_END");
+  std::vector<Sent> first(stream.begin(), stream.end() - 1);
+  const auto later =
+      std::find_if(first.rbegin(), first.rend(), [](const Sent& s) { return s.channel == "KEYFRAME"; });
+  const std::vector<Sent> rest(later.base() - 1, first.end());
+  first.erase(later.base() - 1, first.end());
+  play(first);
+  node.rest();
+  EXPECT_FALSE(node.resting());
+  EXPECT_FALSE(node.done());
+  EXPECT_EQ(core->idle_rounds, 1);
+  play(rest);
+  EXPECT_EQ(core->inputs.size(), 4u) << "keyframes 0 and 1, an idle round, keyframe 2";
+  play({end});
+  EXPECT_TRUE(node.done());
+  EXPECT_EQ(core->idle_rounds, 2);
+
+  MemoryBus other_bus;
+  BackendNode other(other_bus, coreOf(std::make_shared<FakeBackend>()));
+  for (size_t i = 0; i + 1 < stream.size(); ++i) {
+    other_bus.publish(stream[i].channel, stream[i].bytes);
+    other_bus.dispatch(0);
+  }
+  other.rest();
+  EXPECT_EQ(other.graphDigest(), at_end);
+}
+
 TEST_F(BackendNodeTest, TheReasonOfTheOdometryIsHandedOn) {
   play(odometryStream(4, 0.1, 20, "1 message(s) of SPOT_ODOMETRY lost"));
   ASSERT_TRUE(node.done());

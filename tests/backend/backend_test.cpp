@@ -143,6 +143,34 @@ TEST(BackendTest, LostKeyframeIsBridgedByOdometryAndSaidSo) {
   EXPECT_LT(distance(truth, estimate), 0.1);
 }
 
+// The first keyframe of another session is tied to where the robot was found, not to where the map ended.
+TEST(BackendTest, AKeyframeMeasuredFromElsewhereIsPlacedThereAndOnThatStorey) {
+  Backend backend{BackendConfig{}};
+  Walk walk = makeWalk({.num_keyframes = 20});
+  Keyframe found = walk.keyframes.back();
+  walk.keyframes.pop_back();
+  playAll(backend, walk);
+  Rooms rooms;
+  rooms.round = 18;
+  for (const int64_t floor : {0, 1}) rooms.floors.emplace_back().id = FloorId{floor};
+  rooms.keyframe_floors = {{KeyframeId{4}, FloorId{1}}};
+  backend.step({.round = 19, .time = Time{20'000'000}, .keyframe = {}, .rooms = rooms});
+  RelativePose z;
+  z.kind = RelativePoseKind::kNeighbour;
+  z.from = KeyframeId{4};
+  z.to = found.id;
+  z.T_from_to = {so3Exp({0, 0, 2.4}), {0.3, -0.2, 0}};
+  z.covariance = 1e-4 * Matrix6d::Identity();
+  found.relative_poses = {z};
+  const RoundOutput output = play(backend, found, 20);
+  EXPECT_FALSE(output.bridged);
+  const auto& keyframes = backend.graph().keyframes;
+  EXPECT_LT(distance(keyframes.at(found.id).T_map_body, keyframes.at(z.from).T_map_body * z.T_from_to), 1e-6);
+  EXPECT_EQ(keyframes.at(found.id).floor, FloorId{1});
+  // Known from there, and no worse for the way to where the map ended.
+  EXPECT_LT(keyframes.at(found.id).covariance.trace(), keyframes.at(KeyframeId{4}).covariance.trace() + 7e-4);
+}
+
 TEST(BackendTest, RefusedKeyframesLeaveTheGraphAsItWas) {
   const Walk walk = makeWalk({.num_keyframes = 6});
   Backend backend{BackendConfig{}};

@@ -33,6 +33,10 @@ std::function<void(const ReplayProgress&)> progressLine() {
   return [watch = Stopwatch()](const ReplayProgress& p) mutable {
     if (watch.elapsedSeconds() < 0.5) return;
     watch.restart();
+    if (p.loading) {
+      std::fprintf(stderr, "\rloading the map %3.0f %%  ", 100 * p.share);
+      return;
+    }
     std::fprintf(stderr, "\rreplay %3.0f %%  %.0f s of recording  %.1f x real time ", 100 * p.share,
                  p.sensor_s, p.wall_s > 0 ? p.sensor_s / p.wall_s : 0.0);
   };
@@ -42,6 +46,10 @@ void report(const RunRecord& record, const std::string& out_dir) {
   std::printf("%s: %zu scans, %zu keyframes, %.1f s of recording in %.1f s (%.1f x real time), %.0f MiB\n",
               out_dir.c_str(), record.scans.size(), record.graph->keyframes.size(), record.duration_s,
               record.wall_s, record.realtime_factor, record.peak_rss_mib);
+  if (const auto& map = record.continued)
+    std::printf("continues a map of %lld keyframes, loaded in %.1f s; found beside %s after %.1f m, %.1f s\n",
+                static_cast<long long>(map->keyframes), map->load_s, map->matched.str().c_str(),
+                map->walked_m, map->after_s);
   for (const auto& [stage, timing] : record.stages)
     std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   %lld steps\n", stage.c_str(), timing.p50_ms,
                 timing.p99_ms, static_cast<long long>(timing.count));
@@ -57,9 +65,8 @@ std::vector<std::string> stagesOf(const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  if (!arguments.map_dir.empty()) throw UsageError("replay --map: not in this version");
-  ReplayOptions options{arguments.log,       configOf(arguments), arguments.odometry,
-                        stagesOf(arguments), progressLine(),      arguments.record};
+  ReplayOptions options{arguments.log,  configOf(arguments), arguments.odometry, stagesOf(arguments),
+                        progressLine(), arguments.record,    arguments.map_dir,  arguments.out_dir};
   Replay replay(std::move(options));
   replay.run();
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%60s\r", "");
@@ -78,7 +85,10 @@ void run(const Arguments& arguments) {
 void addReplay(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("replay", "A recorded log becomes a map and a trajectory");
-  command->footer("Example:\n  sgraphs replay run.lcmlog -o OUT --threads 2");
+  command->footer(
+      "Examples:\n"
+      "  sgraphs replay run.lcmlog -o OUT --threads 2\n"
+      "  sgraphs replay another_walk.lcmlog --map OUT -o OUT2    goes on with the map in OUT");
   command->add_option("log", arguments->log, "LCM log with SESSION and raw channels")->required();
   command->add_option("-o,--output", arguments->out_dir, "Folder for the result")->required();
   command->add_option("--config", arguments->config_file,
@@ -95,7 +105,7 @@ void addReplay(CLI::App& app) {
       ->check(CLI::IsMember({"keyframes", "walls", "rooms", "floors"}))
       ->capture_default_str();
   command->add_option("--map", arguments->map_dir,
-                      "Result of an earlier run to continue (not in this version)");
+                      "Output folder of an earlier replay whose map is continued");
   command->add_option("--record", arguments->record,
                       "Log that everything said on the bus is written to, for lcm-spy and lcm-logplayer");
   command->callback([arguments] { run(*arguments); });

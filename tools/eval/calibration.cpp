@@ -2,9 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "common/base/error.h"
 #include "common/io/text_file.h"
+#include "tools/eval/graph_sessions.h"
 #include "tools/eval/trajectory_error.h"
 
 namespace sgraphs {
@@ -37,11 +39,17 @@ std::vector<MeasuredLink> readMeasuredLinks(const std::string& graph_json_path) 
   try {
     const auto json = nlohmann::json::parse(readFile(graph_json_path));
     std::map<std::string, Time> times;
+    const int session = lastSession(json);
+    std::set<std::string> earlier;
     for (const auto& node : json.at("nodes"))
-      if (node.at("layer") == "keyframes") times[node.at("id")] = {node.at("utime").get<int64_t>()};
+      if (node.at("layer") == "keyframes") {
+        if (sessionOf(node) != session) earlier.insert(node.at("id").get<std::string>());
+        times[node.at("id")] = {node.at("utime").get<int64_t>()};
+      }
     std::vector<MeasuredLink> links;
     for (const auto& link : json.at("links")) {
       if (!link.contains("covariance") || !link.contains("T_source_target")) continue;
+      if (earlier.contains(link.at("source")) || earlier.contains(link.at("target"))) continue;
       links.push_back({link.at("kind"), times.at(link.at("source")), times.at(link.at("target")),
                        transformOf(link.at("T_source_target")), covarianceOf(link.at("covariance"))});
     }

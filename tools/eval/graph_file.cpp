@@ -8,6 +8,7 @@
 
 #include "common/base/error.h"
 #include "common/io/text_file.h"
+#include "tools/eval/graph_sessions.h"
 
 namespace sgraphs {
 namespace {
@@ -102,11 +103,20 @@ EstimatedGraph readEstimatedGraph(const std::string& graph_json_path) {
     const auto json = Json::parse(readFile(graph_json_path));
     EstimatedGraph graph;
     std::map<std::string, std::string> floor_of_node;
+    const int session = lastSession(json);
     for (const auto& node : json.at("nodes")) {
       floor_of_node[node.at("id")] = textOf(node, "floor");
-      if (node.at("layer") == "keyframes") graph.keyframes.push_back(keyframeOf(node));
+      if (node.at("layer") == "keyframes" && sessionOf(node) == session) {
+        graph.keyframes.push_back(keyframeOf(node));
+        // Given the first keyframe of the map, of which this truth knows nothing.
+        if (session > 0) graph.keyframes.back().covariance.reset();
+      }
       if (node.at("layer") == "walls") graph.walls.push_back(wallOf(node, graph_json_path));
-      if (node.at("layer") == "rooms") graph.rooms.push_back(roomOf(node));
+      if (node.at("layer") == "rooms") {
+        graph.rooms.push_back(roomOf(node));
+        // What was known before was detected by none of this run's scans.
+        if (sessionOf(node) != session) graph.rooms.back().accepted.reset();
+      }
       if (node.at("layer") == "floors") graph.floors.push_back(floorOf(node));
     }
     for (const auto& link : json.at("links"))

@@ -62,7 +62,8 @@ struct EstimatedGraph {
   std::vector<EstimatedDoorway> doorways;
 };
 
-// What graph.json says of them. Throws Error naming the file and what is wrong with it.
+// What graph.json says of them; of a map of several sessions keyframes, and times of rooms, of the last one.
+// Throws Error naming the file and what is wrong with it.
 EstimatedGraph readEstimatedGraph(const std::string& graph_json_path);
 
 }  // namespace sgraphs

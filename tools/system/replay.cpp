@@ -11,10 +11,11 @@
 namespace sgraphs {
 namespace {
 
-// What the odometry says, and what of the source concerns other stages too. A stage that hears more gets a
-// row here.
+// What the odometry says, what the planes do, and what of the source concerns other stages too. A stage that
+// hears more gets a row here.
 constexpr const char* kFromOdometry[] = {channels::kOdometry.name, channels::kKeyframe.name,
                                          channels::kOdometryEnd.name};
+constexpr const char* kFromPlanes[] = {channels::kKeyframePlanes.name, channels::kPlanesEnd.name};
 constexpr const char* kFromSource[] = {channels::kSession.name, channels::kRoundSchedule.name,
                                        channels::kStreamEnd.name};
 
@@ -23,24 +24,43 @@ constexpr const char* kFromSource[] = {channels::kSession.name, channels::kRound
 Replay::Replay(ReplayOptions options) : options_(std::move(options)) {
   if (!options_.odometry.empty()) parseOdometryMode(options_.odometry);
   odometry_.emplace(odometry_bus_, makeOdometryParts(options_.config, counts_), options_.odometry);
-  planes_.emplace(bus_, makePlanesStep(options_.config));
+  planes_.emplace(session_bus_, makePlanesStep(options_.config));
   free_space_.emplace(bus_, makeFreeSpaceStep(options_.config));
   rooms_.emplace(bus_, makeRoomsStep(options_.config));
   loops_.emplace(bus_, makeLoopsStep(options_.config));
   backend_.emplace(bus_, makeBackendCore(options_.config));
-  if (!options_.record.empty()) startRecording();
-  connect();
   inspect();
+  if (!options_.record.empty()) startRecording();
+  if (!options_.map.empty()) earlier_.emplace(options_.map);
+  if (!options_.out_dir.empty()) {
+    map_log_ = std::make_unique<MapLogWriter>(options_.out_dir);
+    map_log_->listenTo(bus_);
+  }
+  if (earlier_) loadMap();
+  connect();
+  feedBeginning();
 }
 
 void Replay::connect() {
   // A recording wants everything in one order.
-  others_.emplace(bus_, options_.config.odometry.threads > 1 && !recording_);
+  others_.emplace(session_bus_, options_.config.odometry.threads > 1 && !recording_);
   const auto forward = [this](const char* channel) {
     odometry_bus_.subscribe(channel, [this, channel](Bus::Bytes bytes) { others_->deliver(channel, bytes); });
   };
   for (const char* channel : kFromSource) forward(channel);
   for (const char* channel : kFromOdometry) forward(channel);
+  if (earlier_) return connectRelocaliser();
+  const auto pass = [this](const char* channel) {
+    session_bus_.subscribe(channel, [this, channel](Bus::Bytes bytes) { publishOnMap(channel, bytes); });
+  };
+  for (const char* channel : kFromSource) pass(channel);
+  for (const char* channel : kFromOdometry) pass(channel);
+  for (const char* channel : kFromPlanes) pass(channel);
+}
+
+void Replay::publishOnMap(const std::string& channel, Bus::Bytes bytes) {
+  bus_.publish(channel, bytes);
+  bus_.dispatch(0);
 }
 
 // What a recorder on the bus of the real processes would see.
@@ -50,7 +70,7 @@ void Replay::startRecording() {
     bus.subscribe(channel, [this, channel](Bus::Bytes bytes) { recording_->write(now_us_, channel, bytes); });
   };
   for (const channels::Row& row : channels::table()) {
-    const bool at_source = row.raw || std::string(row.writer) == "sgraphs-odometry";
+    const bool at_source = row.raw || row.name == std::string(channels::kPoseOdom.name);
     listen(at_source ? odometry_bus_ : bus_, row.name);
   }
 }
@@ -59,22 +79,20 @@ void Replay::startRecording() {
 // the rounds that it governs.
 void Replay::inspect() {
   LogReader reader(options_.log);
-  std::vector<LogEvent> schedules;
   bool has_session = false;
   int32_t schema = -1;
   std::string writer;
-  session_t recorded{};
   while (std::optional<LogEvent> event = reader.next()) {
     session_t session{};
     if (event->channel == channels::kRoundSchedule.name)
-      schedules.push_back(std::move(*event));
+      schedules_.push_back(std::move(*event));
     else if (!has_session && event->channel == channels::kSession.name && decode(event->bytes, session)) {
       schema = session.schema;
       writer = session.writer;
       has_session = fromMessage(session).has_value();
       // Recorded where it stands: a recording that began at 0 could be played by nobody.
       now_us_ = event->timestamp_us;
-      if (has_session) feedSession(recorded = session);
+      if (has_session) session_ = session;
     }
   }
   if (schema >= 0 && schema != kMessageSchema)
@@ -85,18 +103,25 @@ void Replay::inspect() {
     throw Error("log '" + options_.log +
                 "' holds no SESSION: it is no recording of this program; make one with " +
                 "`sgraphs convert` or `sgraphs simulate`");
-  if (!schedules.empty() && !obeysSchedule(recorded)) {
-    schedules.clear();
+  if (!schedules_.empty() && !obeysSchedule(session_)) {
+    schedules_.clear();
     warnings_.push_back("log '" + options_.log +
-                        "' is of a live run with another configuration, odometry mode or choice of layers: "
-                        "its ROUND_SCHEDULE is not obeyed, rounds wait for all their inputs");
+                        "' is of a live run with another configuration, odometry mode, choice of layers or "
+                        "map: its ROUND_SCHEDULE is not obeyed, rounds wait for all their inputs");
   }
-  for (LogEvent& event : schedules) {
+  input_digest_ = sha256OfFile(options_.log);
+}
+
+// Every node sees the same SESSION. Schedules come before the first round.
+void Replay::feedBeginning() {
+  publish(odometry_bus_, channels::kSession, withStages(session_));
+  odometry_bus_.dispatch(0);
+  for (LogEvent& event : schedules_) {
     // Known from the beginning on.
     event.timestamp_us = now_us_;
     feed(event);
   }
-  input_digest_ = sha256OfFile(options_.log);
+  schedules_.clear();
 }
 
 void Replay::feed(const LogEvent& event) {
@@ -114,17 +139,16 @@ bool Replay::obeysSchedule(const session_t& session) const {
   const bool same_stages = ours.empty() || theirs.empty() || ours == theirs;
   const bool same_config = !is_live || session.config_digest == digestOf(options_.config);
   const bool same_mode = options_.odometry.empty() || options_.odometry == session.odometry_mode;
-  return same_stages && same_config && same_mode;
+  return same_stages && same_config && same_mode && options_.map.empty();
 }
 
-// Every node sees the same SESSION, with the stages that this replay was asked for. Schedules, known before
-// the first round, are waited for by nobody.
-void Replay::feedSession(session_t session) {
+// With the stages that this replay was asked for. Schedules, known before the first round, are waited for by
+// nobody.
+session_t Replay::withStages(session_t session) const {
   if (!options_.stages.empty()) session.stages = options_.stages;
   std::erase(session.stages, BackendNode::kScheduleStage);
   session.num_stages = static_cast<int32_t>(session.stages.size());
-  publish(odometry_bus_, channels::kSession, session);
-  odometry_bus_.dispatch(0);
+  return session;
 }
 
 void Replay::run() {
@@ -143,7 +167,8 @@ void Replay::run() {
     }
     feed(*event);
     if (options_.on_progress)
-      options_.on_progress({static_cast<double>(reader.position()) / static_cast<double>(reader.fileBytes()),
+      options_.on_progress({false,
+                            static_cast<double>(reader.position()) / static_cast<double>(reader.fileBytes()),
                             odometry_->duration().seconds(), watch.elapsedSeconds()});
   }
   if (reader.truncated())
@@ -154,11 +179,16 @@ void Replay::run() {
                         "' belong to no event and were skipped");
   if (!odometry_->done()) endWithoutStreamEnd();
   others_->finish();
+  if (relocalise_) {
+    requireScans();
+    requireFound();
+  }
   // A stage of this process that gives no answer is a fault of ours, and no reason to lose what there is.
   if (!backend_->done()) backend_->finish("a stage did not answer every round");
   wall_s_ = watch.elapsedSeconds();
   if (recording_) recording_->close();
   requireScans();
+  if (map_log_) map_log_->commit();
   for (const auto& [kind, n] : odometry_->oddities()) warnings_.push_back(std::to_string(n) + " " + kind);
   if (const std::string refused = describeRefused(*counts_); !refused.empty())
     warnings_.push_back("refused by the VLP-16 decoder: " + refused);
@@ -172,7 +202,7 @@ void Replay::endWithoutStreamEnd() {
 }
 
 void Replay::requireScans() const {
-  if (backend_->rounds() > 0) return;
+  if (relocalise_ ? relocalise_->heard() : backend_->rounds() > 0) return;
   std::string why = describeRefused(*counts_);
   for (const auto& [kind, n] : odometry_->oddities())
     why += (why.empty() ? "" : "; ") + std::to_string(n) + " " + kind;
@@ -184,6 +214,12 @@ void Replay::requireScans() const {
 RunRecord Replay::record() const {
   RunRecord record = recordOf(*backend_, options_.config);
   record.input_digest = input_digest_;
+  if (relocalise_) {
+    record.continued = continued();
+    std::erase_if(record.scans, [&](const OdometryEstimate& scan) {
+      return scan.scan < relocalise_->joiner().firstScan();
+    });
+  }
   record.duration_s = odometry_->duration().seconds();
   record.wall_s = wall_s_;
   record.realtime_factor = wall_s_ > 0 ? record.duration_s / wall_s_ : 0;
@@ -197,6 +233,7 @@ RunRecord Replay::record() const {
   add("free_space", *free_space_);
   add("rooms", *rooms_);
   add("loops", *loops_);
+  if (relocalise_) add("relocalise", *relocalise_);
   if (const auto clock = odometry_->legsClock())
     record.legs_clock = RunRecord::LegsClock{1e3 * clock->offset_s, 1e3 * clock->sigma_s,
                                              1e3 * odometry_->legsClockInForce().seconds()};

@@ -7,6 +7,7 @@
 #include "perception/loops/loops_config.h"
 #include "perception/odometry/odometry_config.h"
 #include "perception/planes/planes_config.h"
+#include "perception/relocalise/relocalise_config.h"
 #include "perception/rooms/rooms_config.h"
 #include "tools/system/live_config.h"
 
@@ -19,6 +20,7 @@ struct SystemConfig {
   FreeSpaceConfig free_space;
   RoomsConfig rooms;
   LoopsConfig loops;
+  RelocaliseConfig relocalise;
   BackendConfig backend;
   LiveConfig live;
   DriverConfig drivers;
@@ -36,6 +38,7 @@ struct SystemConfig {
     v.section("free_space", free_space, "Keyframe clouds and the optimised map to free space");
     v.section("rooms", rooms, "Free space and walls to rooms, doorways and floors");
     v.section("loops", loops, "Keyframe clouds and the optimised map to loop closures");
+    v.section("relocalise", relocalise, "Where in an earlier map the robot is (`sgraphs replay --map`)");
     v.section("backend", backend, "Observations to one optimised graph");
   }
 };

@@ -136,6 +136,31 @@ TEST_F(StoreyTrackerTest, LiftShowsNoMotionAndNothingHappens) {
   EXPECT_EQ(tracker_.bodyHeights().size(), 1u);
 }
 
+// The next session began upstairs.
+TEST_F(StoreyTrackerTest, ARobotThatIsCarriedIsOnTheStoreyOfItsHeight) {
+  walk(10, 0);
+  walk(5, 3.2);
+  walk(6, 3.2);
+  walk(5, 0);
+  EXPECT_EQ(walk(6, 0), FloorId{0});
+  for (const double away_m : {20.0, 0.3}) {
+    x_ += away_m;
+    add(z_ = 3.2);
+    EXPECT_EQ(last(), FloorId{1});
+    EXPECT_EQ(walk(6, 3.2), FloorId{1});
+    x_ += away_m;
+    add(z_ = 0);
+    EXPECT_EQ(last(), FloorId{0});
+    EXPECT_EQ(walk(6, 0), FloorId{0});
+  }
+  x_ += 3;
+  add(z_ = 1.6);
+  EXPECT_FALSE(last().valid()) << "on the stairs";
+  walk(3, 3.2);
+  EXPECT_EQ(walk(4, 3.2), FloorId{1});
+  EXPECT_EQ(tracker_.bodyHeights().size(), 2u);
+}
+
 TEST_F(StoreyTrackerTest, GaitAndSlowDriftAreNoClimb) {
   for (int i = 0; i < 60; ++i) EXPECT_EQ(walk(1, z_ + 0.02), FloorId{0});
 }
