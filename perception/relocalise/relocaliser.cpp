@@ -1,6 +1,7 @@
 #include "perception/relocalise/relocaliser.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 
@@ -15,6 +16,9 @@ constexpr double kAnchorReach_m = 3.0;  // from a pose to the place of the map t
 constexpr double kOneHeight_m = 1.0;    // a candidate's height is that of the storey's places
 constexpr double kApart_m = 0.5;        // poses that are two
 constexpr double kApart_rad = 0.175;
+// Of the looks that were taken where the map knows the place, as a candidate has it, so many must prove it: a
+// few metres of a corridor may look like those of another building, forty do not.
+constexpr double kExplained = 0.5;
 // A match that was left out scored at least this share of the best one if the last one that was taken did.
 constexpr double kRivalScore = 0.85;
 
@@ -39,11 +43,12 @@ class Relocaliser::Impl {
     follow(keyframe);
     if (keyframe.points.empty() || walked_m_ - searched_m_ < config_.search_spacing_m) return std::nullopt;
     searched_m_ = walked_m_;
+    looked_from_.push_back(here().T_odom_body);
     bool complete = true;
     const std::vector<Look> looks = look(complete);
     candidates_.add(looks, here().T_odom_body, walked_m_, complete);
     const Candidate* found = candidates_.found();
-    return found ? std::optional(conclude(*found)) : std::nullopt;
+    return found && explains(*found) ? std::optional(conclude(*found)) : std::nullopt;
   }
 
   double walked_m() const { return walked_m_; }
@@ -184,11 +189,27 @@ class Relocaliser::Impl {
       if (Candidates::same(c, l.T_map_odom, T_odom_body, walked_m_)) return;
     const SE3 T_map_body = c.T_map_odom * T_odom_body;
     for (const KnownStorey& storey : storeys_) {
-      const KnownPlace* anchor = storey.nearest(T_map_body.translation.head<2>(), kAnchorReach_m);
+      const KnownPlace* anchor = placeAt(T_map_body, storey);
       if (!anchor) continue;
-      if (std::abs((anchor->T_map_body.translation - T_map_body.translation).z()) > kOneHeight_m) continue;
       return looker.check(storey, *anchor, T_map_body);
     }
+  }
+
+  const KnownPlace* placeAt(const SE3& T_map_body, const KnownStorey& storey) const {
+    const KnownPlace* place = storey.nearest(T_map_body.translation.head<2>(), kAnchorReach_m);
+    const bool level =
+        place && std::abs((place->T_map_body.translation - T_map_body.translation).z()) <= kOneHeight_m;
+    return level ? place : nullptr;
+  }
+
+  // The walk so far, not only its end, is one through the map.
+  bool explains(const Candidate& c) const {
+    const auto known = std::count_if(looked_from_.begin(), looked_from_.end(), [&](const SE3& T_odom_body) {
+      return std::any_of(storeys_.begin(), storeys_.end(), [&](const KnownStorey& storey) {
+        return placeAt(c.T_map_odom * T_odom_body, storey) != nullptr;
+      });
+    });
+    return static_cast<double>(c.looks.size()) >= kExplained * static_cast<double>(known);
   }
 
   // By the look that knows the session's beginning best.
@@ -223,6 +244,7 @@ class Relocaliser::Impl {
   Candidates candidates_;
   std::deque<Step> path_;
   Matrix6d steps_covariance_ = Matrix6d::Zero();
+  std::vector<SE3> looked_from_;  // T_odom_body of each look
   double walked_m_ = 0;
   double searched_m_ = 0;
   bool up_known_ = false;

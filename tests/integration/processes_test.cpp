@@ -130,7 +130,7 @@ TEST_F(ProcessesTest, AnswerWithTheContractsExitCodes) {
   const Outcome unknown_key = ask("replay " + log.string() + " -o x --set backend.max_iteration=3");
   EXPECT_EQ(unknown_key.code, 2);
   EXPECT_NE(unknown_key.text.find("backend.max_iterations"), std::string::npos) << unknown_key.text;
-  EXPECT_EQ(ask("replay " + log.string() + " -o x --map OUT").code, 2);
+  EXPECT_EQ(ask("replay " + log.string() + " -o x --map /nowhere").code, 1);
   EXPECT_EQ(ask("replay " + log.string() + " -o x --odometry wheels").code, 2);
   EXPECT_EQ(ask("replay " + log.string() + " -o x --layers attic").code, 2);
 }

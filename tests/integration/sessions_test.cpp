@@ -43,13 +43,6 @@ class SessionsTest : public ::testing::Test {
     std::ofstream(folder / "short.json")
         << R"({"start_heading_deg": 167, "start_pause_s": 2, "end_pause_s": 1, "waypoints":
                [[5.8, 1.2], [5.0, 2.2]]})";
-    const std::string scene = "simulate '" SGRAPHS_SOURCE_DIR "/config/scenes/two_rooms/plan.json' ";
-    ok(scene + "-o " + at("first.lcmlog") + " --seed 1");
-    ok(scene + "--waypoints " + at("walk.json") + " -o " + at("second.lcmlog") + " --truth " + at("truth") +
-       " --seed 2");
-    ok(scene + "--waypoints " + at("short.json") + " -o " + at("short.lcmlog") + " --seed 3");
-    ok("replay " + at("first.lcmlog") + " -o " + at("out1"));
-    ok("replay " + at("second.lcmlog") + " --map " + at("out1") + " -o " + at("out2"));
   }
   static void TearDownTestSuite() { fs::remove_all(folder); }
 
@@ -59,6 +52,23 @@ class SessionsTest : public ::testing::Test {
     const int status =
         std::system((SGRAPHS_BINARY_DIR "/sgraphs " + command + " > '" + said.string() + "' 2>&1").c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(said)};
+  }
+  static void simulate(const std::string& log, const std::string& options) {
+    if (fs::exists(folder / log)) return;
+    ok("simulate '" SGRAPHS_SOURCE_DIR "/config/scenes/two_rooms/plan.json' -o " + at(log) + " " + options);
+  }
+  // The first walk and its map, and a second walk.
+  static void makeFirst() {
+    if (fs::exists(folder / "out1")) return;
+    simulate("first.lcmlog", "--seed 1");
+    simulate("second.lcmlog", "--waypoints " + at("walk.json") + " --truth " + at("truth") + " --seed 2");
+    ok("replay " + at("first.lcmlog") + " -o " + at("out1"));
+  }
+  // And the map of both.
+  static void makeSecond() {
+    makeFirst();
+    if (!fs::exists(folder / "out2"))
+      ok("replay " + at("second.lcmlog") + " --map " + at("out1") + " -o " + at("out2"));
   }
   static void ok(const std::string& command) {
     const Outcome outcome = run(command);
@@ -82,6 +92,7 @@ class SessionsTest : public ::testing::Test {
 fs::path SessionsTest::folder;
 
 TEST_F(SessionsTest, TheSecondWalkIsPlacedInTheMapOfTheFirst) {
+  makeSecond();
   const Json first = json("out1/summary.json"), second = json("out2/summary.json");
   EXPECT_TRUE(second["reproducible"]);
   const Json& map = second["map"];
@@ -100,9 +111,8 @@ TEST_F(SessionsTest, TheSecondWalkIsPlacedInTheMapOfTheFirst) {
   EXPECT_EQ(eval["rooms"]["recall"], 1.0);
   EXPECT_EQ(eval["rooms"]["precision"], 1.0);
   EXPECT_EQ(eval["doorways"]["false"], 0);
-}
 
-TEST_F(SessionsTest, TrajectoriesAreOfThisRunAndTheGraphIsOfBoth) {
+  // Trajectories are of this run, the graph is of both.
   EXPECT_EQ(keyframesIn("out2/graph.json", 0), keyframesIn("out1/graph.json", 0));
   EXPECT_EQ(keyframesIn("out2/graph.json", 1), rows("out2/keyframes.tum"));
   EXPECT_EQ(rows("out2/trajectory.tum"), rows("out2/odometry.tum"));
@@ -116,6 +126,7 @@ TEST_F(SessionsTest, TrajectoriesAreOfThisRunAndTheGraphIsOfBoth) {
 }
 
 TEST_F(SessionsTest, TwoThreadsGiveTheSameBytes) {
+  makeSecond();
   ok("replay " + at("second.lcmlog") + " --map " + at("out1") + " -o " + at("out2_threads") + " --threads 2");
   EXPECT_EQ(json("out2/summary.json")["graph_digest"], json("out2_threads/summary.json")["graph_digest"]);
   for (const char* file : {"graph.json", "graph.g2o", "map.ply", "map.lcmlog", "trajectory.tum",
@@ -127,6 +138,7 @@ TEST_F(SessionsTest, TwoThreadsGiveTheSameBytes) {
 }
 
 TEST_F(SessionsTest, AThirdWalkGoesOnWithTheSecondsMapAlsoInPlace) {
+  makeSecond();
   fs::copy(folder / "out2", folder / "out3", fs::copy_options::recursive);
   ok("replay " + at("second.lcmlog") + " --map " + at("out3") + " -o " + at("out3"));
   const Json summary = json("out3/summary.json");
@@ -137,6 +149,8 @@ TEST_F(SessionsTest, AThirdWalkGoesOnWithTheSecondsMapAlsoInPlace) {
 }
 
 TEST_F(SessionsTest, ARobotThatIsNotFoundFailsInOneLineAndWritesNothing) {
+  makeFirst();
+  simulate("short.lcmlog", "--waypoints " + at("short.json") + " --seed 3");
   const Outcome lost = run("replay " + at("short.lcmlog") + " --map " + at("out1") + " -o " + at("lost"));
   EXPECT_EQ(lost.code, 1);
   EXPECT_THAT(lost.text, HasSubstr("the robot was not found in map"));
@@ -146,6 +160,7 @@ TEST_F(SessionsTest, ARobotThatIsNotFoundFailsInOneLineAndWritesNothing) {
 }
 
 TEST_F(SessionsTest, AnotherConfigurationIsNamedAndTheRunGoesOn) {
+  makeFirst();
   const Outcome other = run("replay " + at("second.lcmlog") + " --map " + at("out1") + " -o " + at("other") +
                             " --set backend.rooms.wall_sigma_m=0.05");
   EXPECT_EQ(other.code, 0) << other.text;
@@ -155,6 +170,7 @@ TEST_F(SessionsTest, AnotherConfigurationIsNamedAndTheRunGoesOn) {
 
 // The line of an error, for a map that differs from the first one by what `damage` does to it.
 TEST_F(SessionsTest, WhatIsNoMapIsRefusedInOneLine) {
+  makeFirst();
   const auto refusal = [&](const std::function<void(const fs::path&)>& damage) {
     fs::remove_all(folder / "bad");
     fs::copy(folder / "out1", folder / "bad", fs::copy_options::recursive);

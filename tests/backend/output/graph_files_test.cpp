@@ -94,6 +94,17 @@ TEST(GraphFilesTest, G2oFixesTheFirstVertexAndListsEveryEdge) {
   EXPECT_EQ(edges, graph.relative_poses.size());
 }
 
+TEST(GraphFilesTest, SessionsOfAContinuedMapHaveTheirOwnClocks) {
+  const auto run = test::makeSyntheticRun();
+  const Time begin = run->graph.keyframes.at({10}).time;
+  const std::vector<SessionClock> sessions = {{{0}, {0}, {}}, {{10}, begin, {7'000'000}}};
+  const auto json = nlohmann::json::parse(graphJson(run->graph, {}, {}, sessions));
+  EXPECT_EQ(json["nodes"][9]["session"], 0);
+  EXPECT_EQ(json["nodes"][10]["session"], 1);
+  EXPECT_EQ(json["nodes"][9]["utime"], run->graph.keyframes.at({9}).time.us);
+  EXPECT_EQ(json["nodes"][10]["utime"], begin.us - 7'000'000);
+}
+
 TEST(GraphFilesTest, JsonFollowsTheSchema) {
   const auto run = test::makeSyntheticRun();
   const auto floors = describeFloors(run->graph, buildMap(run->graph, 0.05));

@@ -94,6 +94,23 @@ TEST(RelocaliserTest, AnotherBuildingIsNotFound) {
   EXPECT_FALSE(find(asMap(first), asSession(test::walkThrough(other, 5))));
 }
 
+// Some metres of a corridor were once taken for those of another building, after forty that had looked
+// otherwise.
+TEST(RelocaliserTest, TheEndOfAWalkIsNoProofIfItsBeginningLookedOtherwise) {
+  const LoopWalk first = test::walkThrough(office(), 3);
+  std::vector<Keyframe> session = asSession(test::walkThrough(office(), 4));
+  ASSERT_TRUE(find(asMap(first), session));
+  simulate::Scene other = simulate::makeBoxRoom(14, 9);
+  other.path.waypoints = {{{2, 2}, 0}, {{12, 2}, 0}, {{12, 7}, 0}, {{2, 7}, 0}};
+  const LoopWalk elsewhere = test::walkThrough(other, 5);
+  for (size_t i = 0; i + 14 < session.size(); ++i) {
+    const Keyframe& seen = elsewhere.keyframes[i % elsewhere.keyframes.size()];
+    session[i].points = seen.points;
+    session[i].T_keyframe_body = seen.T_keyframe_body;
+  }
+  EXPECT_FALSE(find(asMap(first), session));
+}
+
 // Twenty offices that are one like the other: ten starts, each may stay lost and none may be wrong.
 TEST(RelocaliserTest, InIdenticalOfficesNoStartIsWrong) {
   const simulate::Scene offices = test::shippedScene("offices20");

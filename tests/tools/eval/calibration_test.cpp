@@ -80,6 +80,25 @@ TEST(CalibrationTest, LinksAreReadAsTheRunWritesThem) {
   EXPECT_EQ(links[0].covariance, someCovariance());
 }
 
+// The truth is of the last walk; at the same stamps an earlier one was elsewhere.
+TEST(CalibrationTest, LinksOfEarlierSessionsAreLeftOut) {
+  SituationalGraph graph;
+  graph.keyframes[{3}] = {{3}, {100}, SE3{}, SE3{}, {}, nullptr};
+  graph.keyframes[{4}] = {{4}, {200}, SE3{}, SE3{}, {}, nullptr};
+  graph.keyframes[{5}] = {{5}, {300}, SE3{}, SE3{}, {}, nullptr};
+  for (const int64_t from : {3, 4})
+    graph.relative_poses.push_back(
+        {from, {RelativePoseKind::kNeighbour, {from}, {from + 1}, test::kSomeTransform, someCovariance()}});
+  const test::TempFolder folder;
+  const std::string path = folder / "graph.json";
+  const std::vector<SessionClock> sessions = {{{3}, {100}, {}}, {{4}, {200}, {150}}};
+  writeFile(path, graphJson(graph, {}, {}, sessions));
+  const auto links = readMeasuredLinks(path);
+  ASSERT_EQ(links.size(), 1u);
+  EXPECT_EQ(links[0].from.us, 50) << "by its recording's own clock";
+  EXPECT_EQ(links[0].to.us, 150);
+}
+
 TEST(CalibrationTest, BrokenGraphsAreNamed) {
   const test::TempFolder folder;
   const std::string path = folder / "graph.json";

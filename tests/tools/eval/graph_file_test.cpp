@@ -42,6 +42,19 @@ TEST(GraphFileTest, ReadsBackWhatARunWrote) {
   EXPECT_EQ(graph.walls[2].polygon, plane.polygon_map);
 }
 
+TEST(GraphFileTest, OfAContinuedMapTheLastSessionsKeyframesAreRead) {
+  Room room;
+  const Time begin = room.run->graph.keyframes.at({10}).time;
+  const std::vector<SessionClock> sessions = {{{0}, {0}, {}}, {{10}, begin, {7'000'000}}};
+  writeFile(room.path,
+            graphJson(room.run->graph, room.run->graph.floors, {{{11}, Matrix6d::Identity()}}, sessions));
+  const EstimatedGraph graph = readEstimatedGraph(room.path);
+  ASSERT_EQ(graph.keyframes.size(), 4u);
+  EXPECT_EQ(graph.keyframes[0].time.us, begin.us - 7'000'000);
+  EXPECT_FALSE(graph.keyframes[1].covariance) << "it is given a keyframe that the truth does not know";
+  EXPECT_EQ(graph.walls.size(), 6u);
+}
+
 TEST(GraphFileTest, WhatIsWrongIsNamedWithTheFile) {
   const Room room;
   const auto good = nlohmann::json::parse(readFile(room.path));
