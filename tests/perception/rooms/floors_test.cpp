@@ -66,7 +66,7 @@ TEST_F(FloorsTest, WhereNoPlaneWasSeenTheBodysHeightElsewhereTells) {
 
 TEST_F(FloorsTest, CentreLiesBetweenTheOutermostOpposedWallsWhateverTheHeading) {
   const Eigen::Rotation2Dd turn(0.6);
-  const auto wall = [&](int64_t id, Eigen::Vector2d a, Eigen::Vector2d b, double z = 0) {
+  const auto wall = [&](int64_t id, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double z = 0) {
     update_.planes.push_back(wallPlane(PlaneId{id}, turn * a, turn * b, z + 0.1, z + 2.5));
   };
   update_.keyframes = {keyframeAt(0, {0, 0})};

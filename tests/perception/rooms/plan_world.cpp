@@ -157,12 +157,11 @@ class Builder {
 
   // The middle of the longest row of the polygon.
   static Eigen::Vector2d innerPoint(const Polygon2d& polygon) {
-    const Eigen::Vector2d center = polygonCentroid(polygon);
+    Eigen::Vector2d center = polygonCentroid(polygon);
     if (contains(polygon, center)) return center;
     for (double r = 0.1; r < 20; r += 0.1)
       for (int k = 0; k < 16; ++k) {
-        const Eigen::Vector2d p =
-            center + r * Eigen::Vector2d(std::cos(k * M_PI / 8), std::sin(k * M_PI / 8));
+        Eigen::Vector2d p = center + r * Eigen::Vector2d(std::cos(k * M_PI / 8), std::sin(k * M_PI / 8));
         if (contains(polygon, p)) return p;
       }
     return center;

@@ -115,7 +115,7 @@ TEST(RoomFinderTest, OtherRingsOfWallsArePolygons) {
 
 TEST(RoomFinderTest, FurnitureColumnsAndADoorLeafLeaveARectangleAsItIs) {
   simulate::Scene scene = sceneOf({rectangle(0, 0, 6, 5)});
-  const auto box = [&scene](Eigen::Vector2d center, Eigen::Vector2d size, double height) {
+  const auto box = [&scene](const Eigen::Vector2d& center, const Eigen::Vector2d& size, double height) {
     scene.boxes.push_back({"", center, size, 0.0, height, 0.0});
   };
   box({1.5, 0.3}, {2.0, 0.56}, 2.0);  // cabinet

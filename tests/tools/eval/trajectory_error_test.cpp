@@ -97,8 +97,8 @@ TEST(AbsoluteErrorTest, PosesOutsideTheTruthsTimeAreLeftOut) {
 }
 
 TEST(AbsoluteErrorTest, StraightLinesCannotBeAligned) {
-  std::vector<Eigen::Vector3d> line;
-  for (int i = 0; i < 10; ++i) line.emplace_back(i, 2 * i, 0);
+  std::vector<Eigen::Vector3d> line(10);
+  for (int i = 0; i < 10; ++i) line[static_cast<size_t>(i)] = {1.0 * i, 2.0 * i, 0};
   EXPECT_THROW(alignPoints(line, line), Error);
 }
 

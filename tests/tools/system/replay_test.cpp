@@ -42,7 +42,7 @@ class ReplayTest : public ::testing::Test {
     return record;
   }
   static std::string changed(const std::string& name, const std::function<bool(const LogEvent&, int)>& keep) {
-    const std::string path = (folder / name).string();
+    std::string path = (folder / name).string();
     testing::copyLog(log, path, keep);
     return path;
   }

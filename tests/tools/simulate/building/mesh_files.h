@@ -15,7 +15,7 @@ inline std::string writeMeshFile(const std::string& name, const std::string& tex
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string folder = testing::TempDir() + "/" + test->test_suite_name() + "_" + test->name();
   std::filesystem::create_directories(folder);
-  const std::string path = folder + "/" + name;
+  std::string path = folder + "/" + name;
   std::ofstream(path) << text;
   return path;
 }

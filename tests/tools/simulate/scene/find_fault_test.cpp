@@ -46,7 +46,7 @@ TEST(FindFaultTest, RoundedCornerThatBrushesFurnitureIsFound) {
 
 // What is said of the scene; one line, or nothing.
 std::string fault(const Scene& scene) {
-  const std::string text = findFault(scene).value_or("");
+  std::string text = findFault(scene).value_or("");
   EXPECT_EQ(text.find('\n'), std::string::npos) << text;
   return text;
 }

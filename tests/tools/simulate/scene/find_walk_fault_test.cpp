@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 std::string fault(const Scene& scene) {
-  const std::string text = findWalkFault(scene).value_or("");
+  std::string text = findWalkFault(scene).value_or("");
   EXPECT_EQ(text.find('\n'), std::string::npos) << text;
   return text;
 }

@@ -37,7 +37,7 @@ std::string complaint(const json& plan) {
   try {
     parseScene(plan.dump(), "plan.json");
   } catch (const Error& error) {
-    const std::string text = error.what();
+    std::string text = error.what();
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;
     EXPECT_EQ(text.rfind("plan.json: ", 0), 0u) << text;
     return text;
