@@ -9,7 +9,7 @@ namespace {
 constexpr double kSame_m = 0.25;
 constexpr double kSame_rad = 0.04;
 constexpr double kDrift_share = 0.03;
-constexpr double kDrift_rad_per_m = 0.005;
+constexpr double kDrift_radpm = 0.005;
 constexpr size_t kMaxCandidates = 32;
 constexpr size_t kMaxLooks = 100;
 
@@ -20,7 +20,7 @@ bool Candidates::same(const Candidate& candidate, const SE3& T_map_odom, const S
   const double since_m = at_m - candidate.seen_m;
   const SE3 d = (candidate.T_map_odom * T_odom_body).inverse() * (T_map_odom * T_odom_body);
   return d.translation.norm() <= kSame_m + kDrift_share * since_m &&
-         so3Log(d.rotation).norm() <= kSame_rad + kDrift_rad_per_m * since_m;
+         so3Log(d.rotation).norm() <= kSame_rad + kDrift_radpm * since_m;
 }
 
 void Candidates::add(const std::vector<Look>& looks, const SE3& T_odom_body, double at_m, bool complete) {

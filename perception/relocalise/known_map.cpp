@@ -37,6 +37,7 @@ std::vector<Eigen::Vector2d> gridBeside(const std::vector<KnownPlace>& places) {
         if (dx * dx + dy * dy <= reach * reach) cells.insert({y + dy, x + dx});
   }
   std::vector<Eigen::Vector2d> out;
+  out.reserve(cells.size());
   for (const auto& [y, x] : cells) out.emplace_back(kGrid_m * x, kGrid_m * y);
   return out;
 }

@@ -37,7 +37,8 @@ Everything example() {
   Everything e;
   e.flag = true;
   e.count = -7;
-  e.text = "w\0alls";
+  e.text = "walls";
+  e.text[1] = 0;
   e.pose = {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), {1, 2, 3}};
   e.covariance(2, 5) = 4;
   e.numbers = {1, 2.5};
