@@ -97,6 +97,7 @@ TEST_F(CandidatesTest, NothingIsSettledWhileMatchesWereLeftOut) {
 TEST_F(CandidatesTest, TheyAreBounded) {
   for (int i = 0; i < 20; ++i) {
     std::vector<Look> many;
+    many.reserve(24);
     for (int k = 0; k < 24; ++k) many.push_back(lookAt(3.0 * k + 100.0 * i, i));
     look(i, many);
     EXPECT_LE(dut_.all().size(), 32u);
