@@ -246,8 +246,8 @@ TEST(PcapPlayerTest, MovesTheClockAndKeepsTheIntervals) {
 
 TEST(PcapPlayerTest, PlaysNoFasterThanAskedFor) {
   const auto path = writeCapture();
+  const Stopwatch watch;  // before the player's own
   PcapPlayer player(path, 10, std::nullopt);
-  const Stopwatch watch;
   Time newest;
   size_t count = 0;
   const Time begin = player.now();
