@@ -397,12 +397,16 @@ void BackendNode::finish(const std::string& why_not) {
   advance();
 }
 
+Time BackendNode::endOfScans() const {
+  return scans_.empty() ? last_round_ : scans_.back().time;
+}
+
 // Idle rounds until rooms and poses have come to rest. False if one has to wait.
-bool BackendNode::finalRounds(Time end) {
+bool BackendNode::finalRounds() {
   const int quiet = takesPart("rooms") ? kQuietRounds : 1;
   while (rounds_ > 0 && final_rounds_ < kMaxFinalRounds && quiet_rounds_ < quiet) {
     // Forced: a recorded schedule asks for what will not come.
-    if (!idleRound(end)) return forced_;
+    if (!idleRound(endOfScans())) return forced_;
     ++final_rounds_;
     const bool changed = !newest_round_.changed.empty() || !newest_round_.changed_planes.empty() ||
                          newest_round_.changed_rooms || feedback_.searching();
@@ -413,8 +417,7 @@ bool BackendNode::finalRounds(Time end) {
 
 void BackendNode::endRun() {
   if (done() || (!workOffKeyframesLeft() && !forced_)) return;
-  const Time end = scans_.empty() ? last_round_ : scans_.back().time;
-  if (finalRounds(end)) conclude(end);
+  if (finalRounds()) conclude(endOfScans());
 }
 
 void BackendNode::rest() {
@@ -423,8 +426,7 @@ void BackendNode::rest() {
 }
 
 void BackendNode::endRest() {
-  if (!workOffKeyframesLeft()) return;
-  if (!finalRounds(scans_.empty() ? last_round_ : scans_.back().time)) return;
+  if (!workOffKeyframesLeft() || !finalRounds()) return;
   resting_ = input_ended_ = false;
   final_rounds_ = quiet_rounds_ = 0;
 }

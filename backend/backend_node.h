@@ -112,7 +112,8 @@ class BackendNode {
   bool workOff(const OdometryEstimate& estimate);
   bool workOffKeyframesLeft();
   bool idleRound(Time time);
-  bool finalRounds(Time end);
+  Time endOfScans() const;
+  bool finalRounds();
   void endRun();
   void endRest();
   void conclude(Time end);

@@ -68,16 +68,14 @@ void JournalBus::keepCheckpoints(int64_t every_bytes,
 
 // The new journal takes the old one's place when it is whole: killed in between, the old one counts.
 void JournalBus::writeCheckpoint() {
-  const std::optional<std::vector<uint8_t>> state = save_();
+  std::optional<std::vector<uint8_t>> state = save_();
   if (!state) return;
   StateArchive archive;
-  archive(session_);
-  std::vector<uint8_t> bytes = archive.takeBytes();
-  bytes.insert(bytes.end(), state->begin(), state->end());
+  archive(session_, *state);
   try {
     auto fresh = std::make_unique<JournalWriter>(path_ + ".new", 0);
     for (int64_t i = 0; i <= boot_; ++i) fresh->append(kBoot, {});
-    fresh->append(kCheckpoint, bytes);
+    fresh->append(kCheckpoint, archive.takeBytes());
     fresh->moveTo(path_);
     journal_ = std::move(fresh);
   } catch (const Error& e) {
@@ -90,8 +88,9 @@ void JournalBus::restoreCheckpoint(Bytes bytes) {
   try {
     if (!restore_) throw Error("this program keeps no checkpoints");
     StateArchive archive(bytes);
-    archive(session_);
-    restore_(bytes.subspan(sizeof session_));
+    std::vector<uint8_t> state;
+    archive(session_, state);
+    restore_(state);
   } catch (const Error& e) {
     const std::string why = e.what();
     forget();

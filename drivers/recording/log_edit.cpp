@@ -70,8 +70,7 @@ class LogCopier {
     session_t message{};
     if (wanted(channels::kSpotOdometry.name) || !decode(event.bytes, message)) return;
     message.has_odometry = 0;
-    event.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, static_cast<int>(event.bytes.size()));
+    event.bytes = encoded(message);
   }
 
   void writeEnd() {

@@ -9,12 +9,8 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kAnchorReach_m = 3.0;   // from a match to the old place that stands for it
-constexpr size_t kMaxSurroundings = 14;  // old places registered against, the nearest
-constexpr double kDistortion_m = 3.0;    // of path on which a cloud's surroundings bend
-constexpr double kSeenFrom_m = 4.0;      // from where an old place can tell what stands here
-constexpr double kApart_m = 0.5;         // poses that are two
-constexpr double kApart_rad = 0.175;
+constexpr double kDistortion_m = 3.0;  // of path on which a cloud's surroundings bend
+constexpr double kSeenFrom_m = 4.0;    // from where an old place can tell what stands here
 
 double across(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).head<2>().norm();
@@ -28,11 +24,6 @@ std::vector<PlacedPlace> queryOf(KeyframeId keyframe, const PlaceMemory& memory,
   for (const Place* place : memory.newestBefore(keyframe, path_m, path))
     out.push_back({place, T_newest_odom * path.odometryOf(place->id)});
   return out;
-}
-
-bool apart(const SE3& a, const SE3& b) {
-  const SE3 d = a.inverse() * b;
-  return d.translation.norm() > kApart_m || so3Log(d.rotation).norm() > kApart_rad;
 }
 
 }  // namespace
@@ -77,23 +68,7 @@ OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, const OldPlaces
     if (T_anchor_body.translation.norm() > config_.verification.submap_radius_m) continue;
     places.push_back({there.place, T_anchor_body});
   }
-  std::stable_sort(places.begin(), places.end(), [](const PlacedPlace& a, const PlacedPlace& b) {
-    return a.T_frame_body.translation.norm() < b.T_frame_body.translation.norm();
-  });
-  if (places.size() > kMaxSurroundings) places.resize(kMaxSurroundings);
-  return OldSurroundings(std::move(places));
-}
-
-const LoopSearch::Anchor* LoopSearch::nearest(const Anchors& anchors, const Eigen::Vector2d& position_map,
-                                              double within_m) {
-  const Anchor* best = nullptr;
-  for (const Anchor& a : anchors) {
-    const double d = (a.T_map_body.translation.head<2>() - position_map).norm();
-    if (d >= within_m) continue;
-    within_m = d;
-    best = &a;
-  }
-  return best;
+  return OldSurroundings::ofNearest(std::move(places));
 }
 
 LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const {
@@ -121,7 +96,7 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
   const std::vector<PlacedPlace> query = queryOf(keyframe, memory, path, config_.verification.query_path_m);
   std::map<KeyframeId, OldSurroundings> surroundings;
   for (const LayoutMatch& match : layout.search(wallsAround(query, T_map_body.rotation), where)) {
-    const Anchor* anchor = nearest(anchors, match.position_map, kAnchorReach_m);
+    const Anchor* anchor = nearestFromAbove(anchors, match.position_map, kAnchorReach_m);
     if (!anchor || (match.position_map - where.centre_map).norm() > anchor->gate.radius_m ||
         std::abs(match.yaw_rad) > anchor->gate.yaw_rad + 0.05)
       continue;
@@ -150,13 +125,13 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
   for (const LoopHypothesis& h : verdict.hypotheses) {
     const SE3 T_map_found = memory.poseOf(h.loop.from).T_map_body * h.loop.T_from_to;
     if (std::all_of(kept.begin(), kept.end(), [&](const LoopHypothesis& k) {
-          return apart(memory.poseOf(k.loop.from).T_map_body * k.loop.T_from_to, T_map_found);
+          return areDistinct(memory.poseOf(k.loop.from).T_map_body * k.loop.T_from_to, T_map_found);
         }))
       kept.push_back(h);
   }
   verdict.hypotheses = std::move(kept);
-  if (!verdict.hypotheses.empty() && verdict.hypotheses.front().correction_m > kApart_m) {
-    if (const Anchor* anchor = nearest(anchors, where.centre_map, kSeenFrom_m)) {
+  if (!verdict.hypotheses.empty() && verdict.hypotheses.front().correction_m > kDistinct_m) {
+    if (const Anchor* anchor = nearestFromAbove(anchors, where.centre_map, kSeenFrom_m)) {
       const OldSurroundings around = surroundingsOf(*anchor, old, path);
       const LoopCheck stays =
           checkLoop(query, around, anchor->T_map_body.inverse() * T_map_body, config_.verification);

@@ -49,7 +49,6 @@ class LoopSearch {
     LoopGate gate;
   };
   using Anchors = std::vector<Anchor>;
-  static const Anchor* nearest(const Anchors& anchors, const Eigen::Vector2d& position_map, double within_m);
   OldPlaces oldPlaces(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
   Anchors anchorsOf(KeyframeId keyframe, const OldPlaces& old, const PlaceMemory& memory,
                     const WalkedPath& path) const;

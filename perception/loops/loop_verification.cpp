@@ -11,14 +11,16 @@ namespace {
 
 constexpr double kMerge_m = 0.08;
 constexpr size_t kMaxMapPatches = 6000;
-constexpr size_t kMaxPatches = 1200;  // of the newer look
-constexpr size_t kWidePatches = 400;  // of these for the first, wide registration
+constexpr size_t kMaxSurroundings = 14;  // old places registered against, the nearest
+constexpr size_t kMaxPatches = 1200;     // of the newer look
+constexpr size_t kWidePatches = 400;     // of these for the first, wide registration
 // The guess comes from a grid of a quarter metre.
 constexpr double kWideGate_m = 0.60;
 constexpr int kWideIterations = 20;
 // Almost nothing: it keeps directions that the surfaces do not see from running away.
 constexpr double kFree_m = 0.5;
 constexpr double kFree_rad = 0.2;
+constexpr double kDistinct_rad = 0.175;
 constexpr size_t kSightPartners = 3;  // old keyframes that each newer one is compared with
 constexpr double kSightReach_m = 4.0;
 constexpr int kLeastSeen = 60;    // patches, before a conflict refutes anything
@@ -63,6 +65,20 @@ double worstSigma(const Matrix6d& covariance, Eigen::Index offset) {
 }
 
 }  // namespace
+
+bool areDistinct(const SE3& a, const SE3& b) {
+  const SE3 d = a.inverse() * b;
+  return d.translation.norm() > kDistinct_m || so3Log(d.rotation).norm() > kDistinct_rad;
+}
+
+OldSurroundings OldSurroundings::ofNearest(std::vector<PlacedPlace> places_anchor) {
+  std::stable_sort(places_anchor.begin(), places_anchor.end(),
+                   [](const PlacedPlace& a, const PlacedPlace& b) {
+                     return a.T_frame_body.translation.norm() < b.T_frame_body.translation.norm();
+                   });
+  if (places_anchor.size() > kMaxSurroundings) places_anchor.resize(kMaxSurroundings);
+  return OldSurroundings(std::move(places_anchor));
+}
 
 OldSurroundings::OldSurroundings(std::vector<PlacedPlace> places_anchor)
     : places_(std::move(places_anchor)), map_(RegistrationConfig().cell_m) {

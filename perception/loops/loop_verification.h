@@ -12,6 +12,8 @@ class OldSurroundings {
  public:
   // Poses in the anchor's body.
   explicit OldSurroundings(std::vector<PlacedPlace> places_anchor);
+  // Of as many of them, the nearest, as a registration needs.
+  static OldSurroundings ofNearest(std::vector<PlacedPlace> places_anchor);
 
   const std::vector<PlacedPlace>& places() const { return places_; }
   const SurfelMap& map() const { return map_; }
@@ -20,6 +22,10 @@ class OldSurroundings {
   std::vector<PlacedPlace> places_;
   SurfelMap map_;
 };
+
+// Whether two poses are two answers and not one: by place, or by heading (10 degrees).
+inline constexpr double kDistinct_m = 0.5;
+bool areDistinct(const SE3& a, const SE3& b);
 
 // How well a newer look at a place agrees with the older one, at the pose that fits best.
 struct LoopCheck {

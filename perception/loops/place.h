@@ -28,6 +28,24 @@ struct PlacedPlace {
   SE3 T_frame_body;
 };
 
+// From a pose to the old place that stands for it.
+inline constexpr double kAnchorReach_m = 3.0;
+
+// Of things with a T_map_body the one nearest to a position from above, closer than `within_m`; nullptr:
+// none.
+template <typename Placed>
+const Placed* nearestFromAbove(const std::vector<Placed>& things, const Eigen::Vector2d& position_map,
+                               double within_m) {
+  const Placed* best = nullptr;
+  for (const Placed& thing : things) {
+    const double d_m = (thing.T_map_body.translation.template head<2>() - position_map).norm();
+    if (d_m >= within_m) continue;
+    within_m = d_m;
+    best = &thing;
+  }
+  return best;
+}
+
 // Remembered places, with their poses in the present map. One per `place_spacing_m` of explored space: what
 // is seen again from where it was seen before is forgotten once it lies off the newest path, so that memory
 // grows with the building and not with the time spent in it.

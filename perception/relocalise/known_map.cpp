@@ -13,7 +13,6 @@ namespace {
 // The robot may stand this far beside where it has been, on a grid as fine as the layout's first search.
 constexpr double kBeside_m = 2.0;
 constexpr double kGrid_m = 0.5;
-constexpr size_t kMaxSurroundings = 14;  // places registered against, the nearest
 
 std::vector<KnownPlace> thinned(const std::vector<const MapView*>& views, double spacing_m) {
   std::vector<KnownPlace> out;
@@ -71,14 +70,7 @@ std::vector<LayoutMatch> KnownStorey::search(const std::vector<WallPoint>& query
 }
 
 const KnownPlace* KnownStorey::nearest(const Eigen::Vector2d& position_map, double within_m) const {
-  const KnownPlace* best = nullptr;
-  for (const KnownPlace& p : places_) {
-    const double d = (p.T_map_body.translation.head<2>() - position_map).norm();
-    if (d >= within_m) continue;
-    within_m = d;
-    best = &p;
-  }
-  return best;
+  return nearestFromAbove(places_, position_map, within_m);
 }
 
 OldSurroundings KnownStorey::surroundingsOf(const KnownPlace& anchor, double radius_m) const {
@@ -88,11 +80,7 @@ OldSurroundings KnownStorey::surroundingsOf(const KnownPlace& anchor, double rad
     const SE3 T_anchor_body = T_anchor_map * p.T_map_body;
     if (T_anchor_body.translation.norm() <= radius_m) near.push_back({&p.place, T_anchor_body});
   }
-  std::stable_sort(near.begin(), near.end(), [](const PlacedPlace& a, const PlacedPlace& b) {
-    return a.T_frame_body.translation.norm() < b.T_frame_body.translation.norm();
-  });
-  if (near.size() > kMaxSurroundings) near.resize(kMaxSurroundings);
-  return OldSurroundings(std::move(near));
+  return OldSurroundings::ofNearest(std::move(near));
 }
 
 }  // namespace sgraphs

@@ -12,20 +12,12 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kAnchorReach_m = 3.0;  // from a pose to the place of the map that stands for it
-constexpr double kOneHeight_m = 1.0;    // a candidate's height is that of the storey's places
-constexpr double kApart_m = 0.5;        // poses that are two
-constexpr double kApart_rad = 0.175;
+constexpr double kOneHeight_m = 1.0;  // a candidate's height is that of the storey's places
 // Of the looks that were taken where the map knows the place, as a candidate has it, so many must prove it: a
 // few metres of a corridor may look like those of another building, forty do not.
 constexpr double kExplained = 0.5;
 // A match that was left out scored at least this share of the best one if the last one that was taken did.
 constexpr double kRivalScore = 0.85;
-
-bool apart(const SE3& a, const SE3& b) {
-  const SE3 d = a.inverse() * b;
-  return d.translation.norm() > kApart_m || so3Log(d.rotation).norm() > kApart_rad;
-}
 
 }  // namespace
 
@@ -153,7 +145,7 @@ class Relocaliser::Impl {
     std::vector<Look> kept;
     for (const Look& l : looker.looks)
       if (std::all_of(kept.begin(), kept.end(), [&](const Look& k) {
-            return apart(k.T_map_odom * here().T_odom_body, l.T_map_odom * here().T_odom_body);
+            return areDistinct(k.T_map_odom * here().T_odom_body, l.T_map_odom * here().T_odom_body);
           }))
         kept.push_back(l);
     return kept;

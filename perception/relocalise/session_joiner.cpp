@@ -76,12 +76,15 @@ void SessionJoiner::continueHeader(header_t& header, const char* channel) const 
   if (last != map_.last_seq.end()) header.seq += last->second + 1;
 }
 
+void SessionJoiner::continuePose(transform_t& T_odom_body) const {
+  if (const auto T = fromMessage(T_odom_body)) T_odom_body = toMessage(T_mapodom_odom_ * *T);
+}
+
 void SessionJoiner::release(odometry_t m) const {
   continueHeader(m.header, channels::kOdometry.name);
   m.scan += firstScan();
   if (m.keyframe >= 0) m.keyframe += firstKeyframe().value;
-  if (const auto T_odom_body = fromMessage(m.T_odom_body))
-    m.T_odom_body = toMessage(T_mapodom_odom_ * *T_odom_body);
+  continuePose(m.T_odom_body);
   sink_.odometry(m);
 }
 
@@ -90,8 +93,7 @@ void SessionJoiner::release(keyframe_t m) const {
   const bool first = m.keyframe == 0;
   m.keyframe += firstKeyframe().value;
   m.scan += firstScan();
-  if (const auto T_odom_body = fromMessage(m.T_odom_body))
-    m.T_odom_body = toMessage(T_mapodom_odom_ * *T_odom_body);
+  continuePose(m.T_odom_body);
   for (relative_pose_t& z : m.relative_poses) {
     z.from_keyframe += firstKeyframe().value;
     z.to_keyframe += firstKeyframe().value;

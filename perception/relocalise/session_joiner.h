@@ -78,6 +78,7 @@ class SessionJoiner {
   void passOrHold(size_t bytes, Release release);
   void seen(const header_t& header);
   void continueHeader(header_t& header, const char* channel) const;
+  void continuePose(transform_t& T_odom_body) const;
   void release(odometry_t m) const;
   void release(keyframe_t m) const;
   void release(keyframe_planes_t m) const;

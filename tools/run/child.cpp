@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "common/base/error.h"
+#include "common/base/exec_arguments.h"
 
 namespace sgraphs {
 namespace {
@@ -37,10 +38,7 @@ namespace {
 Child::Child(const std::vector<std::string>& command, const std::string& output_file) {
   const int output = open(output_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (output < 0) throw Error("cannot write '" + output_file + "': " + std::strerror(errno));
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = execArguments(command);
   int failure[2] = {-1, -1};  // closed by a successful exec
   if (pipe2(failure, O_CLOEXEC) != 0) throw Error(std::string("cannot make a pipe: ") + std::strerror(errno));
   const pid_t parent = getpid();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/base/exec_arguments.h"
 
 namespace sgraphs::spy {
 namespace {
@@ -68,10 +69,7 @@ void runGraphicSpy(const std::string& url) {
   // 128 MB, which Debian's script allows, are too few for large arrays.
   const std::vector<std::string> words{"java", "-Djava.net.preferIPv4Stack=true", "-Xmx512m",
                                        "-cp",  class_path + jar.string(),         "lcm.spy.Spy"};
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = execArguments(words);
   execvp(arguments[0], arguments.data());
   throw Error(std::string("cannot start java: ") + std::strerror(errno));
 }

@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "common/base/error.h"
+#include "common/base/exec_arguments.h"
 
 extern char** environ;
 
@@ -33,10 +34,7 @@ double seconds(const timeval& time) {
 }  // namespace
 
 ChildResult runChild(const std::vector<std::string>& command, const std::string& output_file) {
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = execArguments(command);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
