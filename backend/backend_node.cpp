@@ -204,9 +204,9 @@ bool BackendNode::workOff(const OdometryEstimate& estimate) {
       next_keyframe_ = held < 0 ? last : std::min(held, last);
       if (next_keyframe_ == last) continue;
     }
-    // The chunks were sent before ODOMETRY of the same scan. One more scan of patience lets datagrams that
+    // The chunks are sent before ODOMETRY of the next scan. One more scan of patience lets datagrams that
     // overtook each other arrive.
-    if (!keyframeRound(own ? &estimate : nullptr, !own || pending_.size() > 1 || input_ended_)) return false;
+    if (!keyframeRound(own ? &estimate : nullptr, !own || pending_.size() > 2 || input_ended_)) return false;
   }
   if (rounds_ > 0 && estimate.time - last_round_ >= kIdleAfter && !idleRound(estimate.time)) return false;
   publish(bus_, channels::kPose,

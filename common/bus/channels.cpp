@@ -14,6 +14,7 @@ constexpr std::array kTable{
     Row{"SPOT_ODOMETRY", "spot_odometry_t", "bridge, converter, simulator", "50 Hz", true},
     Row{"ROUND_SCHEDULE", "round_schedule_t", "sgraphs-backend", "per round", true},
     Row{"STREAM_END", "stream_end_t", "any source", "once", true},
+    Row{"POSE_SPOT", "pose_t", "bridge, converter", "50 Hz", false},
     Row{"ODOMETRY", "odometry_t", "sgraphs-odometry", "10 Hz", false},
     Row{"POSE_ODOM", "pose_t", "sgraphs-odometry", "10 Hz", false},
     Row{"KEYFRAME", "keyframe_t", "sgraphs-odometry", "per keyframe, chunks", false},

@@ -34,6 +34,7 @@ inline constexpr Channel<stream_end_t> kStreamEnd{"STREAM_END"};
 
 // Derived channels.
 inline constexpr Channel<odometry_t> kOdometry{"ODOMETRY"};
+inline constexpr Channel<pose_t> kPoseSpot{"POSE_SPOT"};
 inline constexpr Channel<pose_t> kPoseOdom{"POSE_ODOM"};
 inline constexpr Channel<keyframe_t> kKeyframe{"KEYFRAME"};
 inline constexpr Channel<keyframe_planes_t> kKeyframePlanes{"KEYFRAME_PLANES"};

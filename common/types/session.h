@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,9 @@ struct Session {
 struct BodyOdometry {
   Time time;
   SE3 T_odom_body;
+  std::optional<Vector6d> twist_body = {};  // [m/s, rad/s] in body; nothing if the source gave none
 
+  // What is reckoned with; the velocity is only passed on.
   void visitState(auto& archive) { archive(time, T_odom_body); }
 };
 

@@ -12,8 +12,8 @@ namespace sgraphs {
 bool hasTypeOf(const std::string& channel, Bus::Bytes bytes);
 bool hasTypeOf(const LogEvent& event);
 
-// Header of a message on one of our channels; nothing for POSE and POSE_ODOM, which have none, and for bytes
-// of another type.
+// Header of a message on one of our channels; nothing for pose_t, which has none, and for bytes of another
+// type.
 std::optional<header_t> readHeader(const std::string& channel, Bus::Bytes bytes);
 std::optional<header_t> readHeader(const LogEvent& event);
 

@@ -73,6 +73,9 @@ void RecordingWriter::addOdometry(const BodyOdometry& odometry, Time arrived) {
   spot_odometry_t message = toMessage(odometry);
   message.header = header(channels::kSpotOdometry.name, odometry.time);
   write(log_, now_.us, channels::kSpotOdometry, message);
+  if (odometry.twist_body)
+    write(log_, now_.us, channels::kPoseSpot,
+          toPoseMessage(odometry.time, odometry.T_odom_body, *odometry.twist_body));
 }
 
 void RecordingWriter::finish() {

@@ -160,7 +160,7 @@ std::optional<BodyOdometry> SpotBridge::sampleOf(const StateReply& reply) {
   }
   hindrance_.clear();
   speed_mps_ = body.state->twist_body ? body.state->twist_body->head<3>().norm() : 0;
-  return BodyOdometry{*host, body.state->T_frame_body};
+  return BodyOdometry{*host, body.state->T_frame_body, body.state->twist_body};
 }
 
 // A state is acquired while its call is under way, or shortly before.

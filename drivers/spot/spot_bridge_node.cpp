@@ -75,6 +75,9 @@ void SpotBridgeNode::step() {
   newest_ = sample->time;
   spot_odometry_t message = toMessage(*sample);
   publisher_.send(channels::kSpotOdometry, message);
+  if (sample->twist_body)
+    publisher_.sendPlain(channels::kPoseSpot,
+                         toPoseMessage(sample->time, sample->T_odom_body, *sample->twist_body));
 }
 
 void SpotBridgeNode::everySecond() {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "perception/odometry/floor_under_start.h"
@@ -74,13 +75,23 @@ class Odometry::Impl {
         neighbours_(config.registration, config.covariance),
         arena_(config.threads) {}
 
-  std::optional<OdometryOutput> step(const LidarScan& scan, std::span<const BodyOdometry> legs) {
-    std::optional<OdometryOutput> output;
-    arena_.execute([&] { output = stepInArena(scan, legs); });
-    return output;
+  std::optional<OdometryEstimate> step(const LidarScan& scan, std::span<const BodyOdometry> legs) {
+    std::optional<OdometryEstimate> estimate;
+    takeKeyframe();
+    arena_.execute([&] { estimate = stepInArena(scan, legs); });
+    return estimate;
+  }
+
+  std::optional<Keyframe> takeKeyframe() {
+    if (!due_) return std::nullopt;
+    std::optional<Keyframe> keyframe;
+    arena_.execute([&] { keyframe = makeKeyframe(*due_); });
+    due_.reset();
+    return keyframe;
   }
 
   void visitState(StateArchive& archive) {
+    if (due_) throw std::logic_error("the state of an odometry whose keyframe was not taken");
     archive(map_, builder_, neighbours_, has_previous_, has_twist_, previous_pose_, legs_at_previous_end_,
             previous_end_, gap_, previous_twist_, height_m_, registered_covariance_,
             previous_registered_covariance_, keyframe_covariance_, edge_covariance_, T_odom_keyframe_,
@@ -88,7 +99,13 @@ class Odometry::Impl {
   }
 
  private:
-  std::optional<OdometryOutput> stepInArena(const LidarScan& scan, std::span<const BodyOdometry> legs) {
+  // A scan that became a keyframe which is not made yet.
+  struct DueKeyframe {
+    OdometryEstimate estimate;
+    std::optional<UpDirection> up;
+  };
+
+  std::optional<OdometryEstimate> stepInArena(const LidarScan& scan, std::span<const BodyOdometry> legs) {
     // Twists over times that run backwards would throw the robot anywhere.
     if ((has_previous_ && scan.end <= previous_end_) || scan.end - scan.begin > kMaxSweep)
       return std::nullopt;
@@ -100,14 +117,13 @@ class Odometry::Impl {
     std::optional<std::vector<SE3>> measured;
     if (mode_ != OdometryMode::kLidar) measured = measuredMotion(legs, begin, scan.end);
 
-    OdometryOutput output;
+    OdometryEstimate e;
     ScanMotion motion = predict(begin, scan.end, legs, measured);
-    estimate(surfels, measured, motion, output.estimate);
-    remember(surfels, motion, output.estimate);
+    estimate(surfels, measured, motion, e);
+    remember(surfels, motion, e);
     legs_at_previous_end_ = legsPoseAt(legs, scan.end);
     builder_.add(scan, kept, surfels, motion);
 
-    OdometryEstimate& e = output.estimate;
     e.time = scan.end;
     e.scan = next_scan_++;
     e.T_odom_body = motion.T_odom_body.back();
@@ -115,9 +131,10 @@ class Odometry::Impl {
     const bool lost_overlap = e.inlier_share >= 0 && e.inlier_share < config_.keyframes.min_inlier_share &&
                               e.scan - last_keyframe_scan_ >= 5;
     e.is_keyframe = builder_.due(e.T_odom_body) || lost_overlap;
-    if (e.is_keyframe) output.keyframe = makeKeyframe(e, surfels, legs);
+    if (e.is_keyframe) ++next_keyframe_;
     e.keyframe = KeyframeId{next_keyframe_ - 1};
-    return output;
+    if (e.is_keyframe) due_ = DueKeyframe{e, upAt(e, surfels)};
+    return e;
   }
 
   // The motion of a scan without firing times begins where the scan before ended.
@@ -259,15 +276,18 @@ class Odometry::Impl {
     has_previous_ = true;
   }
 
-  Keyframe makeKeyframe(const OdometryEstimate& e, const std::vector<Surfel>& scan_surfels,
-                        std::span<const BodyOdometry> legs) {
+  Keyframe makeKeyframe(const DueKeyframe& due) {
+    const OdometryEstimate& e = due.estimate;
     std::vector<Surfel> surfels;
     const SE3 previous = T_odom_keyframe_;
     Keyframe keyframe = builder_.build(e.T_odom_body, surfels);
-    keyframe.id = KeyframeId{next_keyframe_++};
+    keyframe.id = e.keyframe;
     keyframe.time = e.time;
     keyframe.scan = e.scan;
-    setUp(keyframe, scan_surfels, legs);
+    if (due.up) {
+      keyframe.up_body = due.up->up_body;
+      keyframe.up_sigma_rad = due.up->sigma_rad;
+    }
     if (keyframe.id.value > 0) {
       RelativePose r;
       r.from = KeyframeId{keyframe.id.value - 1};
@@ -308,19 +328,12 @@ class Odometry::Impl {
     return covariance;
   }
 
-  void setUp(Keyframe& keyframe, const std::vector<Surfel>& surfels,
-             std::span<const BodyOdometry> legs) const {
-    if (!legs.empty() && mode_ != OdometryMode::kLidar) {
-      if (const std::optional<SE3> pose = legsPoseAt(legs, keyframe.time)) {
-        keyframe.up_body = pose->rotation.conjugate() * Eigen::Vector3d::UnitZ();
-        keyframe.up_sigma_rad = config_.legs.up_sigma_rad;
-      }
-    } else if (keyframe.id.value == 0) {
-      if (const std::optional<UpDirection> up = floorUnderStart(surfels)) {
-        keyframe.up_body = up->up_body;
-        keyframe.up_sigma_rad = up->sigma_rad;
-      }
-    }
+  // At the end of the newest scan.
+  std::optional<UpDirection> upAt(const OdometryEstimate& e, const std::vector<Surfel>& surfels) const {
+    if (mode_ != OdometryMode::kLidar && legs_at_previous_end_)
+      return UpDirection{legs_at_previous_end_->rotation.conjugate() * Eigen::Vector3d::UnitZ(),
+                         config_.legs.up_sigma_rad};
+    return e.keyframe.value == 0 ? floorUnderStart(surfels) : std::nullopt;
   }
 
   OdometryConfig config_;
@@ -348,6 +361,7 @@ class Odometry::Impl {
   bool new_map_ = false;        // the local map began anew since the last keyframe
   int failures_ = 0;            // scans in a row that found no place in the map
   int64_t next_scan_ = 0, next_keyframe_ = 0, last_keyframe_scan_ = 0;
+  std::optional<DueKeyframe> due_;
 };
 
 Odometry::Odometry(const OdometryConfig& config, OdometryMode mode, const SE3& T_body_lidar)
@@ -358,9 +372,13 @@ void Odometry::visitState(StateArchive& archive) {
   impl_->visitState(archive);
 }
 
-std::optional<OdometryOutput> Odometry::step(const LidarScan& scan,
-                                             std::span<const BodyOdometry> body_odometry) {
+std::optional<OdometryEstimate> Odometry::step(const LidarScan& scan,
+                                               std::span<const BodyOdometry> body_odometry) {
   return impl_->step(scan, body_odometry);
+}
+
+std::optional<Keyframe> Odometry::takeKeyframe() {
+  return impl_->takeKeyframe();
 }
 
 }  // namespace sgraphs

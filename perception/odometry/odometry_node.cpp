@@ -181,22 +181,22 @@ void OdometryNode::workOff() {
   while (std::optional<ScanQueue::Ready> ready = queue_.pop()) {
     if (!ready->complete) ++oddities_["scans without odometry up to their end"];
     const Stopwatch watch;
-    const std::optional<OdometryOutput> output = step_(ready->scan, ready->odometry);
+    const std::optional<OdometryEstimate> estimate = step_.scan(ready->scan, ready->odometry);
+    if (estimate) publishScan(*estimate);
+    const std::optional<Keyframe> keyframe =
+        estimate && estimate->is_keyframe ? step_.take_keyframe() : std::nullopt;
     step_latency_.add(watch.elapsedUs());
-    if (output) {
-      publishScan(*output);
-      followClock(output->estimate);
-    } else {
+    if (keyframe)
+      for (keyframe_t& chunk : toMessages(*keyframe)) publisher_.send(channels::kKeyframe, chunk);
+    if (estimate)
+      followClock(*estimate);
+    else
       ++oddities_["scans that could not be used"];
-    }
   }
 }
 
-void OdometryNode::publishScan(const OdometryOutput& output) {
+void OdometryNode::publishScan(const OdometryEstimate& estimate) {
   ++scans_;
-  if (output.keyframe)
-    for (keyframe_t& chunk : toMessages(*output.keyframe)) publisher_.send(channels::kKeyframe, chunk);
-  const OdometryEstimate& estimate = output.estimate;
   odometry_t message = toMessage(estimate);
   publisher_.send(channels::kOdometry, message);
   publisher_.sendPlain(channels::kPoseOdom,

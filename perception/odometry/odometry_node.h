@@ -23,7 +23,10 @@ namespace sgraphs {
 struct OdometryParts {
   // A packet in, the revolution that it completes out.
   using Decode = std::function<std::optional<LidarScan>(const VelodynePacket&)>;
-  using Step = std::function<std::optional<OdometryOutput>(const LidarScan&, std::span<const BodyOdometry>)>;
+  struct Step {  // as Odometry has them
+    std::function<std::optional<OdometryEstimate>(const LidarScan&, std::span<const BodyOdometry>)> scan;
+    std::function<std::optional<Keyframe>()> take_keyframe = {};  // empty: there are none
+  };
   std::function<Decode()> make_decoder;
   std::function<Step(OdometryMode, const SE3& T_body_lidar)> make_step;
   // State of the decoder and the step that were made last; empty: it cannot be saved.
@@ -34,8 +37,8 @@ struct OdometryParts {
 // Odometry on a bus: SESSION, VELODYNE_PACKETS or LIDAR_POINTS, SPOT_ODOMETRY, STREAM_END in; ODOMETRY,
 // POSE_ODOM, KEYFRAME, ODOMETRY_END out. What it computes depends on its inputs' content and order alone.
 //
-// Of one scan it publishes first the chunks of KEYFRAME (if the scan became one), then ODOMETRY, then
-// POSE_ODOM: whoever hears ODOMETRY of a keyframe knows that all its chunks were sent before.
+// Of one scan it publishes first ODOMETRY and POSE_ODOM, for which a robot waits, then the chunks of KEYFRAME
+// if the scan became one: whoever hears ODOMETRY knows that all keyframes of earlier scans were sent before.
 class OdometryNode {
  public:
   // odometry_override: "lidar", "encoder" or "fused" in place of SESSION's; empty keeps SESSION's. The bus
@@ -84,7 +87,7 @@ class OdometryNode {
   bool plausible(const std::string& channel, Time time);
   void addScan(const std::string& channel, LidarScan scan);
   void workOff();
-  void publishScan(const OdometryOutput& output);
+  void publishScan(const OdometryEstimate& estimate);
   void followClock(const OdometryEstimate& estimate);
   std::string state() const;
 

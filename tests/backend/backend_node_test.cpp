@@ -141,6 +141,23 @@ TEST_F(BackendNodeTest, TheOrderInWhichProcessesAreHeardDoesNotMatter) {
   EXPECT_EQ(digestOf(keyframes_first), node.result().graph_digest);
 }
 
+// Datagrams overtake each other: a keyframe is waited for until two more scans have come.
+TEST_F(BackendNodeTest, AKeyframeMayBeOvertakenByTheNextScan) {
+  const std::vector<Sent> stream = odometryStream(20);
+  std::vector<Sent> overtaken = stream;
+  int swapped = 0;
+  for (size_t i = 0; i + 1 < overtaken.size(); ++i)
+    if (overtaken[i].channel == "KEYFRAME" && overtaken[i + 1].channel == "ODOMETRY") {
+      std::swap(overtaken[i], overtaken[i + 1]);
+      ++swapped;
+      ++i;
+    }
+  ASSERT_GE(swapped, 6);
+  play(stream);
+  ASSERT_TRUE(node.done());
+  EXPECT_EQ(digestOf(overtaken), node.result().graph_digest);
+}
+
 TEST_F(BackendNodeTest, ALostChunkLeavesTheKeyframeWithTheRestOfItsPoints) {
   std::vector<Sent> stream = odometryStream(7, 0.1, 15000);
   drop(stream, "KEYFRAME", 4);  // the second of three chunks of keyframe 1
@@ -289,7 +306,7 @@ TEST_F(BackendNodeTest, DerivedMessagesOfAnotherSessionAreRefusedEvenBeforeSessi
 }
 
 TEST_F(BackendNodeTest, IdsThatCannotBeAreRefused) {
-  std::vector<Sent> stream = odometryStream(7);
+  std::vector<Sent> stream = odometryStream(8);
   const Sent end = stream.back();
   stream.pop_back();
   play(stream);

@@ -63,6 +63,8 @@ class Replay {
   void connect();
   void feedBeginning();
   void loadMap();
+  template <typename Message>
+  void sessionBegins(const Message& m, const LogEvent& event);
   void publishOnMap(const std::string& channel, Bus::Bytes bytes);
   void restAfter(const LogEvent& end);
   MapEnd mapEnd() const;

@@ -1,6 +1,8 @@
 // The part of Replay that continues an earlier map.
 #include <spdlog/fmt/fmt.h>
 
+#include <utility>
+
 #include "common/base/error.h"
 #include "lcmtypes/convert/convert.h"
 #include "tools/system/replay.h"
@@ -20,12 +22,10 @@ void Replay::loadMap() {
       bus_.dispatch(0);
       return;
     }
-    if (event.channel == channels::kOdometry.name) decode(event.bytes, loaded_.last);
-    if (loaded_.between_sessions && decode(event.bytes, keyframe)) {
-      loaded_.between_sessions = false;
-      loaded_.shift = Duration{keyframe.header.utime - event.timestamp_us};
-      loaded_.sessions.push_back({KeyframeId{keyframe.keyframe}, Time{keyframe.header.utime}, loaded_.shift});
-    }
+    if (event.channel == channels::kOdometry.name && decode(event.bytes, loaded_.last))
+      sessionBegins(loaded_.last, event);
+    else if (event.channel == channels::kKeyframe.name && decode(event.bytes, keyframe))
+      sessionBegins(keyframe, event);
     publishOnMap(event.channel, event.bytes);
     if (options_.on_progress) options_.on_progress({true, share, 0, watch.elapsedSeconds()});
   });
@@ -46,6 +46,14 @@ void Replay::loadMap() {
                 "{} comes out otherwise than its summary.json says (graph_digest {:.12}, now {:.12}): "
                 "it was made by another version ({}), with other --layers, or was damaged",
                 dir, earlier_->graphDigest(), loaded_.graph_digest, earlier_->version()));
+}
+
+// ODOMETRY or KEYFRAME of a session's first scan, whichever the log has first.
+template <typename Message>
+void Replay::sessionBegins(const Message& m, const LogEvent& event) {
+  if (!std::exchange(loaded_.between_sessions, false)) return;
+  loaded_.shift = Duration{m.header.utime - event.timestamp_us};
+  loaded_.sessions.push_back({KeyframeId{m.keyframe}, Time{m.header.utime}, loaded_.shift});
 }
 
 // A session of the map is over: the run that it was ended with these rounds.

@@ -32,9 +32,10 @@ OdometryParts makeOdometryParts(const SystemConfig& config, const std::shared_pt
   };
   parts.make_step = [config, made](OdometryMode mode, const SE3& T_body_lidar) {
     const auto odometry = made->odometry = std::make_shared<Odometry>(config.odometry, mode, T_body_lidar);
-    return [odometry](const LidarScan& scan, std::span<const BodyOdometry> samples) {
-      return odometry->step(scan, samples);
-    };
+    return OdometryParts::Step{[odometry](const LidarScan& scan, std::span<const BodyOdometry> samples) {
+                                 return odometry->step(scan, samples);
+                               },
+                               [odometry] { return odometry->takeKeyframe(); }};
   };
   parts.visit_state = [made](StateArchive& archive) { archive(*made->decoder, *made->odometry); };
   parts.clock = config.odometry.clock;

@@ -63,6 +63,10 @@ RosOdometry readOdometry(WireReader reader) {
   if (!(std::abs(q.norm() - 1.0) < 1e-3)) throw WireError("its quaternion is not of unit length");
   odometry.sample.T_odom_body = SE3(q.normalized(), {v[0], v[1], v[2]});
   if (!odometry.sample.T_odom_body.isFinite()) throw WireError("its pose is not finite");
+  for (int i = 0; i < 36; ++i) reader.read<double>();  // covariance of the pose
+  Vector6d twist_body;
+  for (double& value : twist_body) value = reader.read<double>();
+  if (twist_body.allFinite()) odometry.sample.twist_body = twist_body;
   return odometry;
 }
 

@@ -6,7 +6,7 @@
 namespace sgraphs::testing_support {
 namespace {
 
-constexpr double kHalfWidth_m = 1.0, kHeight_m = 2.6, kReach_m = 6, kBody_m = 0.6;
+constexpr double kHalfWidth_m = 1.0, kHeight_m = 2.6, kReach_m = 6, kLeastHalf_m = 0.3, kBody_m = 0.6;
 // Of what odometry states; the rest is for its bias.
 constexpr double kNoiseShare = 0.25;
 constexpr double kNicheEvery_m = 7, kNicheDepth_m = 0.8;
@@ -39,26 +39,6 @@ SE3 poseAt(double s, double side_m) {
   const Eigen::Quaterniond q = so3Exp({0, 0, k * M_PI / 2});
   return {q * so3Exp({0, 0, M_PI / 2}),
           q * Eigen::Vector3d(side_m / 2, s - k * side_m - side_m / 2, kBody_m)};
-}
-
-bool visiblePart(const Face& face, const SE3& T_world_body, Face& part) {
-  const Eigen::Vector3d to = T_world_body.translation - face.centre;
-  const double height = to.dot(face.normal);
-  if (height < 0.1 || height > kReach_m) return false;
-  const double reach = std::sqrt(kReach_m * kReach_m - height * height);
-  const Eigen::Vector3d u = face.across(), v = face.normal.cross(u);
-  const auto clip = [&](double centre, double half, double& out_centre, double& out_half) {
-    const double low = std::max(-half, centre - reach), high = std::min(half, centre + reach);
-    out_centre = 0.5 * (low + high);
-    out_half = 0.5 * (high - low);
-    return out_half > 0.3;
-  };
-  double cu = 0, cv = 0;
-  part = face;
-  if (!clip(to.dot(u), face.half_width_m, cu, part.half_width_m)) return false;
-  if (!clip(to.dot(v), face.half_height_m, cv, part.half_height_m)) return false;
-  part.centre = face.centre + cu * u + cv * v;
-  return true;
 }
 
 Vector6d draw(const Vector6d& sigma, std::mt19937& random) {
@@ -127,10 +107,10 @@ DriftRing makeDriftRing(const DriftRingOptions& options) {
     KeyframePlanes planes;
     planes.keyframe = keyframe.id;
     planes.time = keyframe.time;
-    Face part;
     for (const Face& face : ring.faces) {
       if (std::abs(face.normal.z()) < 0.5 && inTheOpen(T, options)) continue;
-      if (visiblePart(face, T, part)) planes.planes.push_back(noisy(observe(part, T), random));
+      if (const auto part = visiblePart(face, T, kReach_m, kLeastHalf_m))
+        planes.planes.push_back(noisy(observe(*part, T), random));
     }
     ring.planes.push_back(std::move(planes));
     ring.keyframes.push_back(std::move(keyframe));

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -25,6 +28,29 @@ struct Face {
     return {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
   }
 };
+
+// The part of the face within reach of the body, seen if the body is on its visible side and the part is more
+// than twice `least_half_m` long both ways.
+inline std::optional<Face> visiblePart(const Face& face, const SE3& T_world_body, double reach_m,
+                                       double least_half_m) {
+  const Eigen::Vector3d to = T_world_body.translation - face.centre;
+  const double height = to.dot(face.normal);
+  if (height < 0.1 || height > reach_m) return std::nullopt;
+  const double reach = std::sqrt(reach_m * reach_m - height * height);
+  const Eigen::Vector3d u = face.across(), v = face.normal.cross(u);
+  const auto clip = [&](double centre, double half, double& out_centre, double& out_half) {
+    const double low = std::max(-half, centre - reach), high = std::min(half, centre + reach);
+    out_centre = 0.5 * (low + high);
+    out_half = 0.5 * (high - low);
+    return out_half > least_half_m;
+  };
+  double cu = 0, cv = 0;
+  Face part = face;
+  if (!clip(to.dot(u), face.half_width_m, cu, part.half_width_m)) return std::nullopt;
+  if (!clip(to.dot(v), face.half_height_m, cv, part.half_height_m)) return std::nullopt;
+  part.centre = face.centre + cu * u + cv * v;
+  return part;
+}
 
 inline Eigen::Matrix3d observationCovariance(double tilt_rad = 0.003, double offset_m = 0.004) {
   return Eigen::Vector3d(tilt_rad * tilt_rad, tilt_rad * tilt_rad, offset_m * offset_m).asDiagonal();

@@ -6,7 +6,7 @@
 namespace sgraphs::testing_support {
 namespace {
 
-constexpr double kOuter_m = 8, kInner_m = 6, kPath_m = 7, kHeight_m = 2.6, kReach_m = 6;
+constexpr double kOuter_m = 8, kInner_m = 6, kPath_m = 7, kHeight_m = 2.6, kReach_m = 6, kLeastHalf_m = 0.4;
 
 std::vector<Face> makeFaces(const RingOptions& options) {
   std::vector<Face> faces;
@@ -31,27 +31,6 @@ SE3 poseAt(double s) {
   const Eigen::Quaterniond q = so3Exp({0, 0, k * M_PI / 2});
   const Eigen::Vector3d p = q * Eigen::Vector3d(kPath_m, s - k * side - kPath_m, 0.6);
   return {q * so3Exp({0, 0, M_PI / 2}), p};
-}
-
-// The part of the face within reach of the body, seen if the body is on its visible side.
-bool visiblePart(const Face& face, const SE3& T_world_body, Face& part) {
-  const Eigen::Vector3d to = T_world_body.translation - face.centre;
-  const double height = to.dot(face.normal);
-  if (height < 0.1 || height > kReach_m) return false;
-  const double reach = std::sqrt(kReach_m * kReach_m - height * height);
-  const Eigen::Vector3d u = face.across(), v = face.normal.cross(u);
-  const auto clip = [&](double centre, double half, double& out_centre, double& out_half) {
-    const double low = std::max(-half, centre - reach), high = std::min(half, centre + reach);
-    out_centre = 0.5 * (low + high);
-    out_half = 0.5 * (high - low);
-    return out_half > 0.4;
-  };
-  double cu = 0, cv = 0;
-  part = face;
-  if (!clip(to.dot(u), face.half_width_m, cu, part.half_width_m)) return false;
-  if (!clip(to.dot(v), face.half_height_m, cv, part.half_height_m)) return false;
-  part.centre = face.centre + cu * u + cv * v;
-  return true;
 }
 
 Vector6d draw(double sigma_m, double sigma_rad, std::mt19937& random) {
@@ -93,9 +72,9 @@ RingWalk makeRingWalk(const RingOptions& options) {
     KeyframePlanes planes;
     planes.keyframe = keyframe.id;
     planes.time = keyframe.time;
-    Face part;
     for (const Face& face : walk.faces)
-      if (visiblePart(face, T, part)) planes.planes.push_back(noisy(observe(part, T), random));
+      if (const auto part = visiblePart(face, T, kReach_m, kLeastHalf_m))
+        planes.planes.push_back(noisy(observe(*part, T), random));
     walk.planes.push_back(std::move(planes));
     walk.keyframes.push_back(std::move(keyframe));
   }

@@ -28,6 +28,7 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kRoundSchedule, true);
   expectRow(kStreamEnd, true);
   expectRow(kStatusVelodyneDriver, false);
+  expectRow(kPoseSpot, false);
   expectRow(kOdometry, false);
   expectRow(kPoseOdom, false);
   expectRow(kKeyframe, false);
@@ -50,7 +51,7 @@ TEST(ChannelsTest, TheTableAgreesWithTheTypedChannels) {
   expectRow(kStatusLoops, false);
   expectRow(kStatusBackend, false);
   expectRow(kStatusSpotBridge, false);
-  EXPECT_EQ(table().size(), 29u);
+  EXPECT_EQ(table().size(), 30u);
 }
 
 TEST(ChannelsTest, NamesAreUniqueAndCarriedByLcm) {

@@ -145,7 +145,7 @@ TEST_P(BagFormatTest, PacketsAreThoseOfACapture) {
   }
 }
 
-TEST_P(BagFormatTest, OdometryKeepsItsStampsAndPoses) {
+TEST_P(BagFormatTest, OdometryKeepsItsStampsPosesAndTwists) {
   const fs::path folder = test::freshFolder();
   const Packets packets(GetParam().wire, 400);
   const Result result =
@@ -160,6 +160,14 @@ TEST_P(BagFormatTest, OdometryKeepsItsStampsAndPoses) {
     for (int a = 0; a < 3; ++a) EXPECT_EQ(m.T_odom_body.xyz[a], poseAt(i).translation[a]);
     EXPECT_NEAR(m.T_odom_body.wxyz[0], poseAt(i).rotation.w(), 1e-15);
     EXPECT_NEAR(m.T_odom_body.wxyz[3], poseAt(i).rotation.z(), 1e-15);
+  }
+  ASSERT_EQ(result.log.poses.size(), 30u);
+  for (size_t i = 0; i < 30; ++i) {
+    const pose_t& m = result.log.poses[i];
+    EXPECT_EQ(m.utime, result.log.odometry[i].header.utime);
+    for (int a = 0; a < 3; ++a) EXPECT_EQ(m.pos[a], result.log.odometry[i].T_odom_body.xyz[a]);
+    for (int a = 0; a < 3; ++a) EXPECT_EQ(m.vel[a], 0.25 * a);
+    for (int a = 0; a < 3; ++a) EXPECT_EQ(m.rotation_rate[a], 0.25 * (3 + a));
   }
 }
 

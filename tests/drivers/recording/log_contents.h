@@ -19,6 +19,7 @@ struct LogContents {
   std::vector<velodyne_packets_t> packets;
   std::vector<lidar_points_t> points;
   std::vector<spot_odometry_t> odometry;
+  std::vector<pose_t> poses;  // of POSE_SPOT
   std::optional<stream_end_t> end;
 };
 
@@ -39,6 +40,7 @@ inline LogContents readLog(const std::string& path) {
     if (event->channel == "VELODYNE_PACKETS") log.packets.push_back(decoded<velodyne_packets_t>(*event));
     if (event->channel == "LIDAR_POINTS") log.points.push_back(decoded<lidar_points_t>(*event));
     if (event->channel == "SPOT_ODOMETRY") log.odometry.push_back(decoded<spot_odometry_t>(*event));
+    if (event->channel == "POSE_SPOT") log.poses.push_back(decoded<pose_t>(*event));
     if (event->channel == "STREAM_END") log.end = decoded<stream_end_t>(*event);
   }
   return log;

@@ -59,7 +59,9 @@ inline std::vector<uint8_t> odometryMessage(Wire wire, int64_t time_us, const SE
   w.header(time_us, "odom").text("base_link");
   for (int i = 0; i < 3; ++i) w.put(T_odom_body.translation[i]);
   for (int i = 0; i < 4; ++i) w.put(T_odom_body.rotation.coeffs()[i]);
-  for (int i = 0; i < 36 + 6 + 36; ++i) w.put(0.25 * i);  // covariance, twist, covariance
+  for (int i = 0; i < 36; ++i) w.put(1e3 + i);  // covariance
+  for (int i = 0; i < 6; ++i) w.put(0.25 * i);  // twist
+  for (int i = 0; i < 36; ++i) w.put(2e3 + i);
   return w.bytes;
 }
 

@@ -68,6 +68,8 @@ class SpotBridgeTest : public ::testing::Test {
     subscribe(
         bus_, channels::kSpotOdometry, [this](const spot_odometry_t& m) { odometry_.push_back(m); }, ignore);
     subscribe(
+        bus_, channels::kPoseSpot, [this](const pose_t& m) { poses_.push_back(m); }, ignore);
+    subscribe(
         bus_, channels::kStatusSpotBridge, [this](const status_t& m) { status_ = m; }, ignore);
     subscribe(
         bus_, channels::kSession, [this](const session_t& m) { sessions_.push_back(m); }, ignore);
@@ -156,6 +158,17 @@ class SpotBridgeTest : public ::testing::Test {
       const SE3 expected = T_frame_odom * walk(sample->time).T_odom_body;
       EXPECT_LT((sample->T_odom_body.translation - expected.translation).norm(), kPoseTolerance_m);
     }
+    ASSERT_EQ(poses_.size(), odometry_.size());
+    for (size_t i = 0; i < poses_.size(); ++i) {
+      const pose_t& m = poses_[i];
+      EXPECT_EQ(m.utime, odometry_[i].header.utime);
+      const double expected[] = {0.5, 0, 0, 0, 0, 0.5};
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_EQ(m.pos[a], odometry_[i].T_odom_body.xyz[a]);
+        EXPECT_NEAR(m.vel[a], expected[a], 1e-9);
+        EXPECT_NEAR(m.rotation_rate[a], expected[3 + a], 1e-9);
+      }
+    }
   }
   Time steadyNow() const {
     using std::chrono::steady_clock;
@@ -174,6 +187,7 @@ class SpotBridgeTest : public ::testing::Test {
   std::unique_ptr<SpotBridge> bridge_;
   std::unique_ptr<SpotBridgeNode> node_;
   std::vector<spot_odometry_t> odometry_;
+  std::vector<pose_t> poses_;
   std::vector<session_t> sessions_;
   std::vector<stream_end_t> ends_;
   std::optional<status_t> status_;

@@ -49,14 +49,14 @@ TEST_F(OdometryNodeTest, PublishesEveryScanAndEndsWithTheLastNumbers) {
   EXPECT_EQ(odometry.messages[6].header.utime, Source::at(0.7).us);
 }
 
-TEST_F(OdometryNodeTest, SendsTheKeyframesChunksBeforeItsOdometry) {
+TEST_F(OdometryNodeTest, SendsOdometryBeforeTheChunksOfItsKeyframe) {
   make("", 15000);
   std::vector<std::string> order;
   bus.subscribe("KEYFRAME", [&](Bus::Bytes) { order.push_back("KEYFRAME"); });
   bus.subscribe("ODOMETRY", [&](Bus::Bytes) { order.push_back("ODOMETRY"); });
   source.session("lidar", false);
   source.packet(0);
-  EXPECT_EQ(order, (std::vector<std::string>{"KEYFRAME", "KEYFRAME", "KEYFRAME", "ODOMETRY"}));
+  EXPECT_EQ(order, (std::vector<std::string>{"ODOMETRY", "KEYFRAME", "KEYFRAME", "KEYFRAME"}));
   EXPECT_TRUE(odometry.messages.at(0).is_keyframe);
 }
 

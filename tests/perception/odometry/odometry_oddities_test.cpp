@@ -110,11 +110,11 @@ TEST(OdometryOdditiesTest, RefusesScansThatTellNothing) {
   for (size_t i = 0; i < walk.scans.size(); ++i) {
     const bool spoilt = i >= 4 && i <= 6;
     const LidarScan& scan = i == 4 ? poor : i == 5 ? empty : i == 6 ? broken : walk.scans[i];
-    const auto output = odometry.step(scan, {});
-    EXPECT_EQ(output.has_value(), !spoilt);
-    if (!output) continue;
+    const auto estimate = odometry.step(scan, {});
+    EXPECT_EQ(estimate.has_value(), !spoilt);
+    if (!estimate) continue;
     const SE3 truth = walk.truth.poseAt(walk.scans[0].end).inverse() * walk.truth.poseAt(scan.end);
-    EXPECT_LT(distance(truth, output->estimate.T_odom_body), 0.02);
+    EXPECT_LT(distance(truth, estimate->T_odom_body), 0.02);
   }
   // Also as the first ones.
   Odometry fresh(OdometryConfig(), OdometryMode::kLidar, walk.T_body_lidar);
@@ -214,10 +214,10 @@ TEST(OdometryOdditiesTest, StandingStillNeitherDriftsNorGrows) {
                          static_cast<int64_t>(scans.size())};
     scan.begin = scan.begin + later;
     scan.end = scan.end + later;
-    const auto output = odometry.step(scan, {});
-    ASSERT_TRUE(output);
-    EXPECT_LT(output->estimate.T_odom_body.translation.norm(), 0.008);
-    keyframes += output->estimate.is_keyframe;
+    const auto estimate = odometry.step(scan, {});
+    ASSERT_TRUE(estimate);
+    EXPECT_LT(estimate->T_odom_body.translation.norm(), 0.008);
+    keyframes += estimate->is_keyframe;
   }
   EXPECT_EQ(keyframes, 1);
 }

@@ -51,7 +51,7 @@ std::vector<OdometryEstimate> follow(const std::vector<LidarScan>& scans) {
   Odometry odometry(tripod(), OdometryMode::kLidar, SE3());
   std::vector<OdometryEstimate> estimates;
   for (const LidarScan& scan : scans)
-    if (const auto output = odometry.step(scan, {})) estimates.push_back(output->estimate);
+    if (const auto estimate = odometry.step(scan, {})) estimates.push_back(*estimate);
   return estimates;
 }
 

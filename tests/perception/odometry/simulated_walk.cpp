@@ -99,10 +99,11 @@ OdometryRun runOdometry(const SimulatedWalk& walk, OdometryMode mode, const Odom
   Odometry odometry(config, mode, walk.T_body_lidar);
   for (const LidarScan& scan : walk.scans) {
     const auto legs = mode == OdometryMode::kLidar ? std::span<const BodyOdometry>() : walk.legsOf(scan);
-    const std::optional<OdometryOutput> output = odometry.step(scan, legs);
-    if (!output) continue;
-    run.estimates.push_back(output->estimate);
-    if (output->keyframe) run.keyframes.push_back(*output->keyframe);
+    const std::optional<OdometryEstimate> estimate = odometry.step(scan, legs);
+    if (!estimate) continue;
+    run.estimates.push_back(*estimate);
+    if (std::optional<Keyframe> keyframe = odometry.takeKeyframe())
+      run.keyframes.push_back(std::move(*keyframe));
   }
   return run;
 }

@@ -19,10 +19,9 @@ class FakeOdometry {
   explicit FakeOdometry(int keyframe_every = 3, size_t points = 20)
       : keyframe_every_(keyframe_every), points_(points) {}
 
-  std::optional<OdometryOutput> step(const LidarScan& scan, std::span<const BodyOdometry> samples) {
+  std::optional<OdometryEstimate> step(const LidarScan& scan, std::span<const BodyOdometry> samples) {
     if (scan.points.empty()) return std::nullopt;
-    OdometryOutput out;
-    OdometryEstimate& e = out.estimate;
+    OdometryEstimate& e = last_ = {};
     e.time = scan.end;
     e.scan = scan_++;
     e.T_odom_body.translation.x() = 0.1 * static_cast<double>(e.scan);
@@ -30,12 +29,12 @@ class FakeOdometry {
     e.extrapolated = !samples.empty() && samples.back().time < scan.end;
     e.is_keyframe = e.scan % keyframe_every_ == 0;
     e.keyframe = KeyframeId{e.scan / keyframe_every_};
-    if (e.is_keyframe) out.keyframe = keyframeOf(e);
-    return out;
+    return e;
   }
 
- private:
-  Keyframe keyframeOf(const OdometryEstimate& e) const {
+  std::optional<Keyframe> takeKeyframe() const {
+    const OdometryEstimate& e = last_;
+    if (!e.is_keyframe) return std::nullopt;
     Keyframe k;
     k.id = e.keyframe;
     k.time = e.time;
@@ -54,9 +53,11 @@ class FakeOdometry {
     return k;
   }
 
+ private:
   int keyframe_every_;
   size_t points_;
   int64_t scan_ = 0;
+  OdometryEstimate last_;
 };
 
 // Keyframes stay where odometry put them, 1 m higher; the digest covers every input so far. An idle round
@@ -121,9 +122,10 @@ inline OdometryParts partsOf(const std::shared_ptr<FakeOdometry>& fake) {
     };
   };
   parts.make_step = [fake](OdometryMode, const SE3&) {
-    return [fake](const LidarScan& scan, std::span<const BodyOdometry> samples) {
-      return fake->step(scan, samples);
-    };
+    return OdometryParts::Step{[fake](const LidarScan& scan, std::span<const BodyOdometry> samples) {
+                                 return fake->step(scan, samples);
+                               },
+                               [fake] { return fake->takeKeyframe(); }};
   };
   return parts;
 }

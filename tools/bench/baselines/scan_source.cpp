@@ -30,13 +30,14 @@ void forEachScan(const std::string& log, bool with_legs,
   bool has_session = false;
   parts.make_step = [&](OdometryMode, const SE3& T_body_lidar) {
     has_session = true;
-    return [&visit, with_legs, T_body_lidar](const LidarScan& scan, std::span<const BodyOdometry> samples) {
+    const auto show = [&visit, with_legs, T_body_lidar](const LidarScan& scan,
+                                                        std::span<const BodyOdometry> samples) {
       RecordedScan recorded{scan, T_body_lidar, std::nullopt};
-      if (with_legs && samples.empty()) return std::optional<OdometryOutput>{};
-      if (with_legs) recorded.T_odom_body = legsAt(scan.end, samples);
-      visit(recorded);
-      return std::optional<OdometryOutput>{};
+      if (with_legs && !samples.empty()) recorded.T_odom_body = legsAt(scan.end, samples);
+      if (!with_legs || recorded.T_odom_body) visit(recorded);
+      return std::optional<OdometryEstimate>{};
     };
+    return OdometryParts::Step{show};
   };
   MemoryBus bus;
   OdometryNode node(bus, std::move(parts), with_legs ? "encoder" : "lidar");
