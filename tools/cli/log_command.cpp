@@ -3,6 +3,7 @@
 
 #include "common/base/error.h"
 #include "drivers/recording/log_edit.h"
+#include "drivers/recording/log_latency.h"
 #include "drivers/recording/log_summary.h"
 #include "tools/cli/commands.h"
 
@@ -21,6 +22,23 @@ void addInfo(CLI::App& log) {
   command->add_option("LOG", *path, "LCM log")->required();
   command->footer("Example:\n  sgraphs log info run.lcmlog");
   command->callback([path] { std::fputs(toText(summariseLog(*path), *path).c_str(), stdout); });
+}
+
+void addLatency(CLI::App& log) {
+  struct Channels {
+    std::string log, from = "VELODYNE_PACKETS", to = "ODOMETRY";
+  };
+  auto channels = std::make_shared<Channels>();
+  CLI::App* command =
+      log.add_subcommand("latency", "How long one channel came after another while a log was recorded");
+  command->add_option("LOG", channels->log, "LCM log that a recorder wrote")->required();
+  command->add_option("--from", channels->from, "Channel of what comes in")->capture_default_str();
+  command->add_option("--to", channels->to, "Channel of what is made of it")->capture_default_str();
+  command->footer("Example:\n  sgraphs run --record rec --record-all …\n  sgraphs log latency rec/*.lcmlog");
+  command->callback([channels] {
+    const LogLatency latency = latencyIn(channels->log, channels->from, channels->to);
+    std::fputs(toText(latency, channels->from, channels->to).c_str(), stdout);
+  });
 }
 
 void copy(const Arguments& arguments) {
@@ -65,6 +83,7 @@ void addLog(CLI::App& app) {
   log->require_subcommand(1);
   log->footer("Example:\n  sgraphs log info run.lcmlog");
   addInfo(*log);
+  addLatency(*log);
   addCut(*log);
   addFilter(*log);
 }

@@ -4,6 +4,7 @@
 
 #include "common/base/error.h"
 #include "drivers/recording/log_edit.h"
+#include "drivers/recording/log_latency.h"
 #include "drivers/recording/log_summary.h"
 #include "drivers/recording/recording_writer.h"
 #include "tests/common/test_files.h"
@@ -127,6 +128,42 @@ TEST(LogSummaryTest, AForeignLogIsListed) {
   EXPECT_THAT(text, HasSubstr("17 time stamps run backwards"));
   EXPECT_THAT(text, HasSubstr("holds no sgraphs channel"));
   EXPECT_THAT(text, HasSubstr("MAEBOT_ENCODERS"));
+}
+
+// Packets at 50 Hz recorded 1 ms late; ODOMETRY stamped between the 4th and the 5th, the 8th and the 9th, …
+TEST(LogLatencyTest, IsFromTheLastMessageThatWentIn) {
+  const fs::path path = test::freshFolder() / "run.lcmlog";
+  LogWriter log(path);
+  const auto stamped = [](auto message, int64_t stamp_us) {
+    message.header.utime = kStart_us + stamp_us;
+    return message;
+  };
+  write(log, kStart_us - 900, channels::kOdometry,
+        stamped(odometry_t{}, -1000));  // of packets not in the log
+  for (int64_t i = 0; i < 400; ++i) {
+    const int64_t stamp_us = 20'000 * i;
+    write(log, kStart_us + stamp_us + 1000, channels::kVelodynePackets,
+          stamped(velodyne_packets_t{}, stamp_us));
+    if (i % 4 != 3) continue;
+    const int64_t took_us = 5'000 + 100 * (i / 4);  // 5.0 ms, 5.1 ms … 14.9 ms
+    write(log, kStart_us + stamp_us + 1000 + took_us, channels::kOdometry,
+          stamped(odometry_t{}, stamp_us + 500));
+  }
+  log.close();
+  const LogLatency latency = latencyIn(path, "VELODYNE_PACKETS", "ODOMETRY");
+  EXPECT_EQ(latency.count, 100);
+  EXPECT_EQ(latency.unpaired, 1);
+  EXPECT_EQ(latency.p50_us, 9'900);
+  EXPECT_EQ(latency.p90_us, 13'900);
+  EXPECT_EQ(latency.p99_us, 14'800);
+  EXPECT_EQ(latency.max_us, 14'900);
+  EXPECT_EQ(toText(latency, "VELODYNE_PACKETS", "ODOMETRY"),
+            "ODOMETRY after VELODYNE_PACKETS: 100 messages (1 more with none before them), p50 9.9 ms, p90 "
+            "13.9 ms, "
+            "p99 14.8 ms, at most 14.9 ms\n");
+  EXPECT_THAT(test::messageOf<UsageError>([&] { latencyIn(path, "LIDAR_POINTS", "ODOMETRY"); }),
+              HasSubstr("no message with a header on 'LIDAR_POINTS'"));
+  EXPECT_THROW(latencyIn(path, "VELODYNE_PACKETS", "POSE"), UsageError);
 }
 
 TEST(LogEditTest, ACutStaysCompleteByItself) {
