@@ -1,15 +1,19 @@
 #include "tools/eval/truth.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "common/geometry/convex_polygon.h"
 #include "common/io/text_file.h"
 
 namespace sgraphs {
 namespace {
 
 constexpr double kWallHeight_m = 2.5;  // of a wall whose plan does not say
+constexpr double kOnCentreLine_m = 0.05;
 
 TrueWall wallOf(const nlohmann::json& json) {
   const auto a = json.at("a").get<std::array<double, 2>>(), b = json.at("b").get<std::array<double, 2>>();
@@ -41,6 +45,20 @@ TrueDoorway doorwayOf(const nlohmann::json& json) {
   return {json.value("floor", size_t{0}), {p[0], p[1], p[2]}, json.at("width")};
 }
 
+// The pane of a glazed window lies in the centre plane of the wall on which its sill stands.
+std::optional<TrueWall> paneOf(const nlohmann::json& window, const std::vector<TrueWall>& walls) {
+  if (!window.value("glazed", false)) return std::nullopt;
+  const auto sill = window.at("xyz").get<std::array<double, 3>>();
+  const Eigen::Vector2d middle(sill[0], sill[1]);
+  const auto wall = std::find_if(walls.begin(), walls.end(), [&](const TrueWall& w) {
+    return distanceToSegment(middle, w.a, w.b) < kOnCentreLine_m;
+  });
+  if (wall == walls.end()) return std::nullopt;
+  const Eigen::Vector2d half = 0.5 * window.at("width").get<double>() * (wall->b - wall->a).normalized();
+  return TrueWall{middle - half, middle + half, 0, sill[2], sill[2] + window.at("height").get<double>(),
+                  true};
+}
+
 // A room or doorway without a storey would be judged against another one's.
 void checkStoreys(Plan& plan, const std::string& path) {
   if (plan.floors_z_m.empty() && (!plan.rooms.empty() || !plan.doorways.empty())) plan.floors_z_m = {0.0};
@@ -62,6 +80,8 @@ Plan readPlan(const std::string& path) {
     plan.floors_z_m = json.value("floors", std::vector<double>{});
     if (json.contains("T_body_lidar")) plan.T_body_lidar = transformOf(json.at("T_body_lidar"));
     for (const auto& wall : list("walls")) plan.walls.push_back(wallOf(wall));
+    for (const auto& window : list("windows"))
+      if (const auto pane = paneOf(window, plan.walls)) plan.panes.push_back(*pane);
     for (const auto& doorway : list("doorways")) plan.doorways.push_back(doorwayOf(doorway));
     for (const auto& room : list("rooms")) plan.rooms.push_back(roomOf(room, path));
     checkStoreys(plan, path);

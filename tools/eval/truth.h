@@ -41,6 +41,7 @@ struct Plan {
   std::vector<double> floors_z_m;  // empty only if no room or doorway asks for a storey
   std::vector<TrueRoom> rooms;
   std::vector<TrueWall> walls;
+  std::vector<TrueWall> panes;  // of glazed windows, in the centre planes of their walls
   std::vector<TrueDoorway> doorways;
 };
 

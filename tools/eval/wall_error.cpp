@@ -46,10 +46,12 @@ bool claimTheSame(const WallMatch& a, const WallMatch& b) {
 }
 
 bool onPane(const Eigen::Vector3d& p, const Plan& plan) {
-  return std::any_of(plan.walls.begin(), plan.walls.end(), [&](const TrueWall& wall) {
+  const auto is_on = [&](const TrueWall& wall) {
     return wall.glass && p.z() > wall.z_low_m - kOnSurface_m && p.z() < wall.z_high_m + kOnSurface_m &&
            distanceToSegment(p.head<2>(), wall.a, wall.b) <= 0.5 * wall.thickness_m + kOnSurface_m;
-  });
+  };
+  return std::any_of(plan.walls.begin(), plan.walls.end(), is_on) ||
+         std::any_of(plan.panes.begin(), plan.panes.end(), is_on);
 }
 
 // Share of the wall's extent near some surface of the building, whatever it is; panes may not be in the mesh.

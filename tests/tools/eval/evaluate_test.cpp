@@ -140,6 +140,20 @@ TEST(EvaluateTest, OptionalTruthAndOutputsMayBeAbsent) {
   EXPECT_THAT(table, testing::HasSubstr("walls     not judged: OUT has no graph.json"));
 }
 
+TEST(EvaluateTest, GlazedWindowsOfThePlanArePanes) {
+  const Case c;
+  writeFile(c.truth + "/plan.json", R"({"floors": [0],
+      "walls": [{"a": [0, 0], "b": [0, 6], "thickness": 0.2, "z": [0, 3]}],
+      "windows": [{"xyz": [0, 2, 0.9], "width": 1.2, "height": 1.3, "glazed": true},
+                  {"xyz": [0, 4, 0.9], "width": 1.2, "height": 1.3}]})");
+  const Plan plan = *readTruth(c.truth).plan;
+  ASSERT_EQ(plan.panes.size(), 1u);
+  EXPECT_TRUE(plan.panes[0].a.isApprox(Eigen::Vector2d(0, 1.4), 1e-9));
+  EXPECT_TRUE(plan.panes[0].b.isApprox(Eigen::Vector2d(0, 2.6), 1e-9));
+  EXPECT_DOUBLE_EQ(plan.panes[0].z_low_m, 0.9);
+  EXPECT_DOUBLE_EQ(plan.panes[0].z_high_m, 2.2);
+}
+
 TEST(EvaluateTest, WhatIsWrongIsSaidInOneLine) {
   const Case c;
   const Truth truth = readTruth(c.truth);

@@ -184,5 +184,18 @@ TEST(WallErrorTest, PanesAreNeitherAskedForNorFalse) {
   EXPECT_EQ(result.false_walls, std::vector<size_t>{1});
 }
 
+TEST(WallErrorTest, AWallOnThePaneOfAWindowIsNotFalse) {
+  Judge j;
+  const EstimatedWall pane =
+      test::shifted(TwoRooms::estimateOf(j.faces[TwoRooms::kSouth], 1, 2.5, 0.8, 1.9), 1.0);
+  j.walls = {pane};
+  EXPECT_EQ(j.judge().false_walls.size(), 1u);
+  const Eigen::Vector2d a = pane.polygon[0].head<2>(), b = pane.polygon[1].head<2>();
+  j.rooms.plan.panes = {{a, b, 0, 0.8, 1.9, true}};
+  EXPECT_TRUE(j.judge().false_walls.empty());
+  j.rooms.plan.panes.front().z_high_m = 1.2;
+  EXPECT_EQ(j.judge().false_walls.size(), 1u);
+}
+
 }  // namespace
 }  // namespace sgraphs
