@@ -215,6 +215,7 @@ void GraphBuilder::mergePlanes(PlaneId from, PlaneId into) {
 
   PlaneNode& kept = graph_.planes.at(into);
   const PlaneNode& gone = graph_.planes.at(from);
+  if (!kept.floor.valid()) kept.floor = gone.floor;
   Polygon2d extent = extentOf(kept);
   const Polygon2d more = extentOn(kept, gone);
   extent.insert(extent.end(), more.begin(), more.end());

@@ -31,7 +31,8 @@ double reachOf(const PlaneNode& plane) {
 bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate,
                    double tilt_sigma_rad) {
   const double turned_rad = std::min(kMaxTurned_rad, 4 * gate.surface_rad + 3 * tilt_sigma_rad);
-  if (a.floor != b.floor || a.normal_map.dot(b.normal_map) < std::cos(turned_rad)) return false;
+  const bool two_storeys = a.floor.valid() && b.floor.valid() && a.floor != b.floor;
+  if (two_storeys || a.normal_map.dot(b.normal_map) < std::cos(turned_rad)) return false;
   if ((a.centroid_map - b.centroid_map).norm() > reachOf(a) + reachOf(b)) return false;
   // Judged where both were seen: away from there a small difference in tilt would count as distance.
   const Polygon2d own = extentOf(a), other = extentOn(a, b), both = intersection(own, other);

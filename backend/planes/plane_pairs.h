@@ -8,7 +8,8 @@ namespace sgraphs {
 // What two mapped planes are to each other.
 
 // The same surface, found twice: same side, coplanar within the gate's surface tolerance where both were
-// seen, extents that share a good part of the smaller one. tilt_sigma_rad: what their tilts are not sure of
+// seen, extents that share a good part of the smaller one; not of two storeys (what was first seen on the
+// stairs is of none, and may be one with a wall of either). tilt_sigma_rad: what their tilts are not sure of
 // relative to each other; small pieces are not.
 bool areOneSurface(const PlaneNode& a, const PlaneNode& b, const AssociationGate& gate,
                    double tilt_sigma_rad = 0);

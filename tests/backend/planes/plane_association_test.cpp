@@ -99,6 +99,16 @@ TEST_F(PlaneAssociationTest, SurfacesAreOneOrTwo) {
   EXPECT_FALSE(areOneSurface(planeOf(wall, 0), planeOf(beside, 1), gate)) << "extents do not meet";
 }
 
+// In a stairwell one wall was mapped from a storey and from the stairs, and stayed two for good.
+TEST_F(PlaneAssociationTest, WhatWasSeenFromTheStairsMayBeAStoreysWall) {
+  PlaneNode below = planeOf(wall, 0), other = planeOf(wall, 1);
+  other.floor = FloorId{1};
+  EXPECT_FALSE(areOneSurface(below, other, gate));
+  other.floor = {};
+  EXPECT_TRUE(areOneSurface(below, other, gate));
+  EXPECT_TRUE(areOneSurface(other, below, gate));
+}
+
 TEST_F(PlaneAssociationTest, FacesOfOneWallFaceAwayFromEachOther) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Face back{{5.05, 0.3, 1.2}, {1, 0, 0}};
