@@ -27,6 +27,8 @@ constexpr double kMaxGate_m = 0.15;
 // Normals this far from vertical have a horizontal axis worth drawing along.
 constexpr double kMaxUpright = 0.95;
 
+constexpr int kBehind = 3;
+
 // Axes of the grids in a plane: along the floor and upwards where there is such a direction, so that the
 // outline of a wall is a rectangle. Right-handed with the normal.
 TangentBasis gridAxes(const Eigen::Vector3d& normal) {
@@ -45,13 +47,15 @@ PlaneSearchConfig widened(PlaneSearchConfig config, double thickness_m) {
 
 // Whether a segment is made of the outliers of a plane found before: just beyond its gate, within its
 // outline, facing the same way, and with a tenth of its points per area. A board before a wall has as many as
-// the wall.
+// the wall. What lies just behind the plane, where nothing can be seen but through its openings, needs to
+// have a third of its points: jambs, panes and far points at grazing incidence make ghosts of the wall there.
 bool isTailOf(const PlaneObservation& plane, const PlaneObservation& found, double gate_m, double min_cos) {
   const Eigen::Vector3d delta = plane.centroid_body - found.centroid_body;
-  const double distance_m = std::abs(found.normal_body.dot(delta));
+  const double before_m = found.normal_body.dot(delta), distance_m = std::abs(before_m);
   if (distance_m < 0.5 * gate_m || distance_m > 3 * gate_m) return false;
   if (plane.normal_body.dot(found.normal_body) < min_cos) return false;
-  if (10 * plane.num_points * found.area_m2 > found.num_points * plane.area_m2) return false;
+  const bool behind = before_m < 0 && kBehind * plane.num_points < found.num_points;
+  if (!behind && 10 * plane.num_points * found.area_m2 > found.num_points * plane.area_m2) return false;
   const Eigen::Vector2f at = (tangentBasis(found.normal_body).transpose() * delta).cast<float>();
   Eigen::AlignedBox2f bounds;
   for (const Eigen::Vector2f& corner : found.boundary) bounds.extend(corner);

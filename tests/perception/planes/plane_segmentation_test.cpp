@@ -132,6 +132,26 @@ TEST(PlaneSegmentationTest, ParallelWallsThirtyCentimetresApartStayTwo) {
   EXPECT_LT(angleBetween(planes[0].normal_body, planes[1].normal_body), 0.004);
 }
 
+// Panes, jambs and far points at grazing incidence made ghosts of a wall: second walls 3 to 9 cm behind its
+// face.
+TEST(PlaneSegmentationTest, JustBehindAWallThereIsNoOtherButBeforeItThereIs) {
+  const auto wallWith = [](double filling_x_m) {
+    CloudMaker cloud;
+    const double half = 0.6, low = 0.3, high = 1.3;
+    cloud.addRectangle({3, -3, -0.5}, {0, 3 - half, 0}, {0, 0, 2.4}, 0.005);
+    cloud.addRectangle({3, half, -0.5}, {0, 3 - half, 0}, {0, 0, 2.4}, 0.005);
+    cloud.addRectangle({3, -half, -0.5}, {0, 2 * half, 0}, {0, 0, low + 0.5}, 0.005);
+    cloud.addRectangle({3, -half, high}, {0, 2 * half, 0}, {0, 0, 1.9 - high}, 0.005);
+    cloud.addRectangle({filling_x_m, -half, low}, {0, 2 * half, 0}, {0, 0, high - low}, 0.005);
+    return planesOf(cloud.keyframe);
+  };
+  const auto behind = wallWith(3.09), before = wallWith(2.91);
+  ASSERT_EQ(behind.size(), 1u);
+  EXPECT_NEAR(behind[0].d(), 3.0, 0.002);
+  ASSERT_EQ(before.size(), 2u);
+  EXPECT_NEAR(before[1].d(), 2.91, 0.003);
+}
+
 TEST(PlaneSegmentationTest, APersonLeaningOnAWallHardlyMovesIt) {
   CloudMaker cloud;
   cloud.addRectangle({3, -2, -0.5}, {0, 4, 0}, {0, 0, 2}, 0.015);
