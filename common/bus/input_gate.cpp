@@ -45,6 +45,13 @@ bool InputGate::accept(const std::string& channel, const header_t& header, int64
   return true;
 }
 
+bool InputGate::acceptSession(const std::string& channel, int64_t session) {
+  if (session_ == 0) session_ = session;
+  if (session == session_) return true;
+  reject(channel, "of another session");
+  return false;
+}
+
 void InputGate::reject(const std::string& channel, const std::string& why) {
   ++counts_[channel].rejected;
   if (++reasons_[channel][why] == 1) spdlog::warn("{}: message refused: {}", channel, why);

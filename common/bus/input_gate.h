@@ -28,6 +28,10 @@ class InputGate {
   // channel that starts above 0 has lost its beginning.
   bool accept(const std::string& channel, const header_t& header, int64_t* lost_before = nullptr);
 
+  // For SESSION where it is heard by who may come late to a session that runs: its earlier repetitions were
+  // not for them and are not lost. False, and refused, if it is of another session than the first one heard.
+  bool acceptSession(const std::string& channel, int64_t session);
+
   // Counts a message that did not decode, or whose content is refused; `why` is named once per channel and
   // kind.
   void reject(const std::string& channel, const std::string& why);

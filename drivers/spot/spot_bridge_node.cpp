@@ -51,10 +51,7 @@ void SpotBridgeNode::onSession(const session_t& m) {
   const std::optional<Session> session = fromMessage(m);
   if (!session)
     return gate_.reject(channel, "no session id, another schema, or content that cannot be right");
-  // A driver may come to a session that runs: its earlier repetitions are not lost, they were not for us.
-  if (!session_) gate_.setSession(session->id);
-  if (session->id != gate_.session()) return gate_.reject(channel, "of another session");
-  if (session_) return;
+  if (!gate_.acceptSession(channel, session->id) || session_) return;
   session_ = session;
   publisher_.setSession(session->id);
   if (!session->has_odometry)

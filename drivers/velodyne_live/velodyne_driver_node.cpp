@@ -52,7 +52,7 @@ void VelodyneDriverNode::onSession(const session_t& m) {
   if (!session)
     return gate_.reject(channels::kSession.name,
                         "no session id, another schema, or content that cannot be right");
-  if (!gate_.accept(channels::kSession.name, m.header) || session_) return;
+  if (!gate_.acceptSession(channels::kSession.name, session->id) || session_) return;
   session_ = session;
   publisher_.setSession(session->id);
 }

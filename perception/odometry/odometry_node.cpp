@@ -18,7 +18,7 @@ constexpr Duration kMaxReorder{100'000};
 // A sweep in more chunks than this is no sweep (2800 points each).
 constexpr int kMaxSweepChunks = 1000;
 // To be raised with every change of what visitState() lists, anywhere.
-constexpr int32_t kStateVersion = 1;
+constexpr int32_t kStateVersion = 2;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void OdometryNode::onSession(const session_t& m) {
   if (done()) return;
   const std::string channel = channels::kSession.name;
   if (session_) {
-    if (gate_.accept(channel, m.header)) plausible(channel, Time{m.header.utime});
+    gate_.accept(channel, m.header);
     return;
   }
   std::optional<Session> session = fromMessage(m);
@@ -85,7 +85,7 @@ void OdometryNode::visitState(StateArchive& archive) {
   }
   parts_.visit_state(archive);
   if (clock_) archive(*clock_);
-  archive(publisher_, gate_, queue_, first_time_, newest_time_, newest_packet_, scans_, oddities_);
+  archive(publisher_, gate_, queue_, first_time_, newest_time_, newest_packet_, heard_, scans_, oddities_);
 }
 
 bool OdometryNode::enter(const std::string& channel, const header_t& header) {
@@ -102,6 +102,8 @@ bool OdometryNode::plausible(const std::string& channel, Time time) {
     gate_.reject(channel, "sensor time jumps by more than an hour");
     return false;
   }
+  // SESSION of a live run is stamped by the host, whose clock may be minutes off the sensor's.
+  if (!std::exchange(heard_, true)) first_time_ = newest_time_ = time;
   newest_time_ = std::max(newest_time_, time);
   return true;
 }

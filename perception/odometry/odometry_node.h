@@ -105,7 +105,8 @@ class OdometryNode {
   ScanQueue queue_{false};
   std::optional<ClockOffset> clock_;
   std::vector<lidar_points_t> sweep_;  // chunks so far of the sweep being assembled
-  Time first_time_, newest_time_;
+  Time first_time_, newest_time_;      // of the sensors; SESSION's start until one is heard
+  bool heard_ = false;
   Time newest_packet_;
 
   std::optional<stream_end_t> end_;

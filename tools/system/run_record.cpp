@@ -17,8 +17,9 @@ RunRecord recordOf(const BackendNode& backend, const SystemConfig& config) {
   record.graph_digest = backend.result().graph_digest;
   record.reproducible = backend.result().reproducible != 0;
   record.why_not = backend.result().why_not;
-  if (backend.session() && !record.scans.empty())
-    record.duration_s = (record.scans.back().time - backend.session()->start).seconds();
+  // SESSION's own stamp may be of another clock.
+  if (!record.scans.empty())
+    record.duration_s = (record.scans.back().time - record.scans.front().time).seconds();
   record.peak_rss_mib = peakResidentMib();
   record.stages["backend"] = timingOf(backend.roundLatency());
   addGaps(record, backend.gate());

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "common/base/error.h"
 #include "common/bus/channels.h"
 #include "common/bus/memory_bus.h"
@@ -159,6 +161,9 @@ TEST_F(DriverNodeTest, WithoutASessionOfItsOwnItWaitsForOne) {
 
   session_t session = toMessage(someSession(), Time{SensorStream::kHour_us});
   session.header.session = 4711;
+  session.header.seq = 2;  // it comes late: two repetitions were before it, and are not lost
+  publish(bus_, channels::kSession, session);
+  session.header.seq = 3;
   publish(bus_, channels::kSession, session);
   bus_.dispatch(0);
   for (int i = 0; i < 100; ++i) node.take(stream.next());
@@ -168,7 +173,9 @@ TEST_F(DriverNodeTest, WithoutASessionOfItsOwnItWaitsForOne) {
   ASSERT_FALSE(heard_.packets.empty());
   EXPECT_EQ(heard_.packets.front().header.session, 4711);
   EXPECT_EQ(heard_.packets.front().header.seq, 0);
-  EXPECT_EQ(heard_.sessions.size(), 1u);
+  EXPECT_EQ(heard_.sessions.size(), 2u);
+  const std::vector<int64_t>& lost = heard_.status.back().lost;
+  EXPECT_EQ(std::accumulate(lost.begin(), lost.end(), int64_t{0}), 0);
   EXPECT_TRUE(heard_.ends.empty());
 }
 

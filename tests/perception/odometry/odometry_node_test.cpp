@@ -49,6 +49,18 @@ TEST_F(OdometryNodeTest, PublishesEveryScanAndEndsWithTheLastNumbers) {
   EXPECT_EQ(odometry.messages[6].header.utime, Source::at(0.7).us);
 }
 
+// A sensor without GPS tells the hour's part only, and a host's clock may be minutes off it: a run lasted
+// -150 s.
+TEST_F(OdometryNodeTest, TimeIsTheSensorsAlsoWhereSessionIsStampedByAnotherClock) {
+  make();
+  source.session("lidar", false);
+  for (int s = 0; s <= 10; ++s) source.packet(-600 + 0.1 * s);
+  source.session("lidar", false);
+  EXPECT_EQ(node->now(), Source::at(-599));
+  EXPECT_EQ(node->duration(), Duration::fromSeconds(1.0));
+  EXPECT_EQ(odometry.messages.size(), 11u);
+}
+
 TEST_F(OdometryNodeTest, SendsOdometryBeforeTheChunksOfItsKeyframe) {
   make("", 15000);
   std::vector<std::string> order;
