@@ -159,7 +159,7 @@ class Drawing {
   // Name and area, small enough for the room.
   void drawNames(Canvas& canvas) const {
     for (const FloorPlan::Room& room : plan_.rooms) {
-      const double size = std::clamp(0.35 * room.room_for_label_m, 0.5 * letter_, 1.2 * letter_);
+      const double size = std::clamp(0.25 * room.room_for_label_m, 0.4 * letter_, 1.2 * letter_);
       const Eigen::Vector2d up(0, 0.35 * size);
       canvas.text(room.label_at + up, (room.corridor ? "Corridor " : "Room ") + room.id.str(), size, kText,
                   TextAnchor::kCenter);
