@@ -109,7 +109,8 @@ std::string commandLine(const CLI::App& command) {
   std::string text = "sgraphs bench accuracy";
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || option->get_name() == "--output" ||
-        option->get_name() == "--write-benchmark" || option->get_name() == "--commit")
+        option->get_name() == "--write-benchmark" || option->get_name() == "--commit" ||
+        option->get_name() == "--report")
       continue;
     text += " " + option->get_name();
     std::string values;
@@ -157,6 +158,8 @@ void addAccuracy(CLI::App& bench_command) {
       ->capture_default_str();
   command->add_flag("--fresh", options.fresh, "Results from before do not count");
   command->add_flag("--any-build", options.any_program, "Results of other builds of the program count, too");
+  command->add_flag("--report", options.report_only,
+                    "Tables of what stands in the folder; nothing is measured");
   command->add_flag("--keep", options.keep, "Keep recordings and OUT folders (gigabytes)");
   command->add_option("--write-benchmark", a->benchmark_file, "BENCHMARK.md to write the tables into");
   command->add_option("--commit", a->commit, "What to write into it as the program's commit");

@@ -100,6 +100,7 @@ class Bench {
         report(key, 0, /*known=*/true);
         continue;
       }
+      if (options_.report_only) continue;
       const Stopwatch watch;
       if (!simulated) simulation_failed = simulateInto(folder, recording);
       simulated = true;

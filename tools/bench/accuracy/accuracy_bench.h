@@ -29,6 +29,7 @@ struct AccuracyOptions {
   std::vector<std::string> settings;                         // --set of `sgraphs replay`
   bool fresh = false;                                        // results from before do not count
   bool any_program = false;                                  // results of other builds count
+  bool report_only = false;                                  // nothing is measured
   bool keep = false;                                         // recordings and OUT folders stay
   std::function<void(const AccuracyProgress&)> on_progress;  // called by one thread at a time; may be empty
 };
@@ -36,7 +37,7 @@ struct AccuracyOptions {
 // Simulates every scene with every seed, runs what the tables ask for on the recordings, and judges it: each
 // by its own process of `program`. Results stand in work_dir/results; those that are there already are not
 // made again. A run that fails is a result that says why. Returns one result for each (scene, seed, run) of
-// the tables.
+// the tables; with `report_only` for those that stand there.
 std::vector<RunResult> runAccuracy(const AccuracyOptions& options);
 
 }  // namespace sgraphs::bench

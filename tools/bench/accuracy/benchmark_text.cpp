@@ -17,7 +17,8 @@ constexpr char kEnd[] = "<!-- sgraphs bench accuracy: end -->";
 constexpr char kTitle[] = "# Benchmark\n";
 
 constexpr char kHowToRead[] =
-    "Each cell: median over the seeds, and in brackets the least and the greatest. All rows of a scene and "
+    "Each cell: median over the seeds, and in brackets the least and the greatest; [n] where only n of the "
+    "seeds were run. All rows of a scene and "
     "seed "
     "stand on the same recording;\nthe figures are those of `sgraphs eval` "
     "([docs/accuracy.md](docs/accuracy.md)). "

@@ -29,11 +29,19 @@ std::string spreadCell(const Spread& spread) {
   return cell;
 }
 
+// Of a run cut off the rows may hold fewer seeds than there are.
+size_t seedsIn(const std::vector<RunResult>& results) {
+  std::set<uint64_t> seeds;
+  for (const RunResult& result : results) seeds.insert(result.key.seed);
+  return seeds.size();
+}
+
 std::string cellOf(const TableSpec& table, const RowSpec& row, const std::string& scene,
                    const std::vector<RunResult>& results) {
   const auto value = spreadOf(results, scene, row.run, row.figure);
   if (!value) return "–";
   std::string cell = spreadCell(*value);
+  if (value->count < seedsIn(results)) cell += " [" + std::to_string(value->count) + "]";
   if (table.completeness_figure.empty()) return cell;
   const auto completeness = spreadOf(results, scene, row.run, table.completeness_figure);
   if (!completeness) return cell;

@@ -89,6 +89,16 @@ TEST_F(AccuracyBenchTest, ASecondRunMakesNothingAgain) {
   }
 }
 
+TEST_F(AccuracyBenchTest, AReportMeasuresNothing) {
+  options_.seeds = 1;
+  runAccuracy(options_);
+  forgetCalls();
+  options_.seeds = 2;
+  options_.report_only = true;
+  EXPECT_EQ(runAccuracy(options_).size(), 2u);
+  EXPECT_EQ(calls(""), 0);
+}
+
 TEST_F(AccuracyBenchTest, FreshMakesEverythingAgain) {
   runAccuracy(options_);
   forgetCalls();

@@ -29,6 +29,14 @@ TEST(ResultCellsTest, OneSeedHasNoSpread) {
             "12.35");
 }
 
+TEST(ResultCellsTest, FewerSeedsThanThereAreAreSaid) {
+  const std::vector<RunResult> results{resultOf("cf1", 1, "lidar-walls", {{"ate_m", 0.01}}),
+                                       resultOf("cf1", 2, "lidar-walls", {{"ate_m", 0.02}}),
+                                       resultOf("se1", 2, "lidar-walls", {{"ate_m", 0.03}})};
+  EXPECT_THAT(resultCells(smallTable(), results)[1],
+              ElementsAre("ours", "0.0150 (0.0100–0.0200)", "0.0300 [1]"));
+}
+
 TEST(ResultCellsTest, AMapThatIsNotCompleteIsMarked) {
   TableSpec table{"map", "Map", "map_completeness", {"a", "b"}, {{"ours", "encoder-walls", "map_rmse_m"}}};
   const std::vector<RunResult> results{
