@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "common/base/error.h"
+#include "common/base/notify_ready.h"
 #include "common/bus/lcm_bus.h"
 #include "common/io/text_file.h"
 #include "drivers/host_clock.h"
@@ -66,6 +67,7 @@ int runSpotBridge(const ProcessText& text, const ProcessSetup& setup, const Spot
   StopSignals stop;
   node.everySecond();
   spdlog::info("listening");
+  notifyReady();
   Time next_second = steadyNow() + kSecond;
   while (!node.done() && !stop.requested()) {
     const int64_t wait_ms = ((bridge.due() - steadyNow()).us + 999) / 1000;

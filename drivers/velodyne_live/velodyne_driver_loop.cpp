@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "common/base/notify_ready.h"
 #include "common/bus/journal_bus.h"
 #include "common/bus/lcm_bus.h"
 #include "drivers/host_clock.h"
@@ -83,6 +84,7 @@ int runVelodyneDriver(const ProcessText& text, const ProcessSetup& setup,
   StopSignals signals;
   Stopwatch second, since_start;
   spdlog::info("listening");
+  notifyReady();
   while (!source.ended() && !signals.requested()) {
     for (const UdpDatagram& datagram : source.take(kPoll_ms)) node.take(datagram);
     if (options.no_session)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/base/notify_ready.h"
 #include "common/base/performance.h"
 #include "common/types/session.h"
 #include "tools/system/stop_signals.h"
@@ -133,6 +134,7 @@ void runLoop(JournalBus& bus, const ProcessSetup& setup, const LoopHooks& hooks)
                  status.elapsedSeconds());
   hooks.publish_status();
   spdlog::info("listening");
+  notifyReady();
   while (!hooks.done() || setup.stay) {
     if (signals.requested()) {
       hooks.finish("stopped by a signal");
