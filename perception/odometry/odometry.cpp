@@ -189,6 +189,27 @@ class Odometry::Impl {
     return motion;
   }
 
+  // What is known of the scan's begin: it is the end of the scan before, as well as that was registered, and
+  // but for what a constant twist leaves out of a scan's motion; that is most along the vertical, where the
+  // body bobs. Where the scan before is known badly (along a corridor), begin_sigma bounds it. A begin that
+  // may move more than that lets whole scans bend: in a corridor the left wall is always seen at one time of
+  // the sweep and the right one at another, so the map agrees with any bend that it was built with.
+  Matrix6d beginInformation() const {
+    const RegistrationConfig& c = config_.registration;
+    // After a silence the begin of the scan is a guess.
+    const double gap_s = std::max(0.0, gap_.seconds() - 0.005);
+    Matrix6d information =
+        diagonalInformation(c.begin_sigma_m + 0.5 * gap_s, c.begin_sigma_rad + 0.5 * gap_s);
+    if (gap_s > 0 || previous_registered_covariance_.isZero()) return information;
+    Vector6d seam;
+    seam << c.seam_sigma_m, c.seam_sigma_m, c.seam_vertical_sigma_m,
+        Eigen::Vector3d::Constant(c.seam_sigma_rad);
+    Matrix6d covariance = previous_registered_covariance_;
+    covariance.diagonal() += seam.cwiseAbs2();
+    information += covariance.inverse();
+    return information;
+  }
+
   void estimate(const std::vector<Surfel>& surfels, const std::optional<std::vector<SE3>>& measured,
                 ScanMotion& motion, OdometryEstimate& e) {
     const RegistrationConfig& c = config_.registration;
@@ -208,10 +229,7 @@ class Odometry::Impl {
     if (mode_ == OdometryMode::kEncoder || map_.empty()) return;
 
     MotionPrior prior;
-    // After a silence the begin of the scan is a guess.
-    const double gap_s = std::max(0.0, gap_.seconds() - 0.005);
-    prior.begin_information =
-        diagonalInformation(c.begin_sigma_m + 0.5 * gap_s, c.begin_sigma_rad + 0.5 * gap_s);
+    prior.begin_information = beginInformation();
     if (measured) {
       for (const SE3& piece : *measured) {
         prior.relative.push_back(piece);

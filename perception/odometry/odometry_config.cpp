@@ -34,7 +34,10 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
           "Largest angle between the normals of a match");
   v.field("sigma_floor_m", sigma_floor_m, 0.0005, 0.1,
           "Error of the surface model that averaging does not reduce");
-  v.field("robust_width", robust_width, 0.5, 20.0, "Width of the Cauchy kernel in standard deviations");
+  v.field("robust_width", robust_width, 0.5, 20.0,
+          "Width of the Cauchy kernel in standard deviations; on upright surfaces only at first");
+  v.field("robust_width_upright", robust_width_upright, 0.5, 20.0,
+          "The width it ends with on upright surfaces, some of which are people that walk");
   v.field("max_iterations", max_iterations, 1, 100, "Gauss-Newton iterations per scan at most");
   v.field("segments", segments, 1, 8, "Pieces of constant twist that a scan's motion is made of");
   v.field("acceleration_sigma_mps2", acceleration_sigma_mps2, 0.1, 100.0,
@@ -46,8 +49,14 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
   v.field("height_sigma_m", height_sigma_m, 1e-4, 100.0,
           "Lidar mode: how well a walking body keeps its height where no floor or ceiling is in view");
   v.field("height_memory_s", height_memory_s, 0.1, 100.0, "Time over which that height follows the body");
-  v.field("begin_sigma_m", begin_sigma_m, 1e-5, 1.0, "How well the end of the previous scan is trusted");
-  v.field("begin_sigma_rad", begin_sigma_rad, 1e-6, 1.0, "How well the end of the previous scan is trusted");
+  v.field("begin_sigma_m", begin_sigma_m, 1e-5, 1.0,
+          "A scan begins where the one before ended: within this where that is badly known");
+  v.field("begin_sigma_rad", begin_sigma_rad, 1e-6, 1.0, "The same, of the rotation");
+  v.field("seam_sigma_m", seam_sigma_m, 1e-6, 1.0,
+          "Horizontal motion within a scan that a constant twist leaves out, at the scan's end");
+  v.field("seam_vertical_sigma_m", seam_vertical_sigma_m, 1e-6, 1.0,
+          "The same along the vertical: a walking body bobs");
+  v.field("seam_sigma_rad", seam_sigma_rad, 1e-6, 1.0, "The same, of the rotation");
 }
 
 void LegsConfig::visit(ConfigVisitor& v) {

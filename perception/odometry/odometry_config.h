@@ -37,6 +37,7 @@ struct RegistrationConfig {
   double max_normal_angle_rad = 0.7;
   double sigma_floor_m = 0.006;
   double robust_width = 3.0;
+  double robust_width_upright = 1.5;
   int max_iterations = 12;
   int segments = 1;
   double acceleration_sigma_mps2 = 0.8;
@@ -44,8 +45,11 @@ struct RegistrationConfig {
   double angular_acceleration_sigma_rps2 = 1.5;
   double height_sigma_m = 0.01;
   double height_memory_s = 2.0;
-  double begin_sigma_m = 0.005;
+  double begin_sigma_m = 0.015;
   double begin_sigma_rad = 0.0008;
+  double seam_sigma_m = 0.0003;
+  double seam_vertical_sigma_m = 0.005;
+  double seam_sigma_rad = 0.0003;
 
   void visit(ConfigVisitor& v);
 };

@@ -16,6 +16,12 @@ namespace {
 constexpr double kNormalFloor_rad = 0.01;
 // How many times stronger than feigned information a prior must be to hold against it.
 constexpr double kOverFeigned = 10.0;
+// A patch is an inlier within so many standard deviations of sensor and surface.
+constexpr double kInlier = 3.0;
+// A surface whose normal is steeper than 45 degrees is level: floor, ceiling, tread.
+constexpr double kLevel = 0.7;
+// The kernel's width on upright surfaces shrinks by this from iteration to iteration.
+constexpr double kNarrowing = 0.7;
 // No direction is claimed to be known worse than this [1/m^2, 1/rad^2]; it keeps inverses finite.
 constexpr double kLeastInformation = 1.0;
 constexpr size_t kBlock = 256;  // patches per partial sum; fixed, so that sums do not depend on the threads
@@ -73,24 +79,45 @@ void forEach(size_t count, int threads, const Work& work) {
     for (size_t i = 0; i < count; ++i) work(i);
 }
 
+// What an iteration takes for a match, and how far off it may be.
+struct Reach {
+  double gate_m;
+  double min_cos;
+  double level_width, upright_width;  // of the kernel, in standard deviations
+  bool final;                         // the kernel is as narrow as it gets
+
+  Reach(const RegistrationConfig& config, int iteration)
+      // Far matches help only while the guess is far off.
+      : gate_m(iteration < 2 ? config.gate_m : 0.5 * config.gate_m),
+        min_cos(std::cos(config.max_normal_angle_rad)),
+        level_width(config.robust_width) {
+    const double least = std::min(config.robust_width_upright, config.robust_width);
+    upright_width = std::max(least, config.robust_width * std::pow(kNarrowing, iteration));
+    final = upright_width == least;
+  }
+
+  double widthOn(const MapCell& cell) const {
+    return std::abs(cell.normal.z()) > kLevel ? level_width : upright_width;
+  }
+};
+
 // Residual and weight of one match: r = n . (T p - mu), its derivative by the right perturbation of T being
 // [R^T n; p x R^T n] (translation, rotation).
 void addPatch(const Surfel& s, double factor, const ScanMotion& motion, const Pieces& pieces,
-              const SurfelMap& map, const RegistrationConfig& config, double gate_m, double min_cos,
-              Sums& sums) {
+              const SurfelMap& map, double sigma_floor_m, const Reach& reach, Sums& sums) {
   const auto [knot, share] = motion.placeOf(s.time_us);
   const SE3 T = poseAt({knot, share}, motion, pieces);
   const Eigen::Vector3d point = T * s.mean;
-  const MapCell* cell = map.match(point, T.rotation * s.normal, gate_m, min_cos);
+  const MapCell* cell = map.match(point, T.rotation * s.normal, reach.gate_m, reach.min_cos);
   if (!cell) return;
   const Eigen::Vector3d offset = point - cell->mean;
   const double r = cell->normal.dot(offset);
   // The plane is less known away from its mean.
   const double variance = s.variance_m2 + cell->variance_m2 +
                           cell->tilt_variance * (offset.squaredNorm() - r * r) +
-                          config.sigma_floor_m * config.sigma_floor_m;
-  const double width2 = config.robust_width * config.robust_width * variance;
-  const double weight = factor / (variance * (1.0 + r * r / width2));
+                          sigma_floor_m * sigma_floor_m;
+  const double width = reach.widthOn(*cell);
+  const double weight = factor / (variance + r * r / (width * width));
   const Eigen::Vector3d m = T.rotation.conjugate() * cell->normal;
   Vector6d J;
   J << m, s.mean.cross(m);
@@ -110,8 +137,7 @@ void addPatch(const Surfel& s, double factor, const ScanMotion& motion, const Pi
   sums.feigned[knot] += a * a * feigned;
   sums.feigned_off[knot] += a * b * feigned;
   sums.feigned[knot + 1] += b * b * feigned;
-  // An inlier: within three standard deviations of sensor and surface.
-  if (r * r < width2) {
+  if (r * r < kInlier * kInlier * variance) {
     sums.squares_m2 += r * r;
     ++sums.matches;
   }
@@ -137,16 +163,15 @@ std::vector<double> balance(const std::vector<Surfel>& surfels, const ScanMotion
 
 Sums sumPatches(const std::vector<Surfel>& surfels, const std::vector<double>& factors,
                 const ScanMotion& motion, const SurfelMap& map, const RegistrationConfig& config,
-                double gate_m, int threads) {
+                const Reach& reach, int threads) {
   const size_t knots = motion.T_odom_body.size();
   const size_t blocks = (surfels.size() + kBlock - 1) / kBlock;
   const Pieces pieces(motion);
-  const double min_cos = std::cos(config.max_normal_angle_rad);
   std::vector<Sums> partial(blocks, Sums(knots));
   const auto work = [&](size_t block) {
     const size_t end = std::min(surfels.size(), (block + 1) * kBlock);
     for (size_t i = block * kBlock; i < end; ++i)
-      addPatch(surfels[i], factors[i], motion, pieces, map, config, gate_m, min_cos, partial[block]);
+      addPatch(surfels[i], factors[i], motion, pieces, map, config.sigma_floor_m, reach, partial[block]);
   };
   forEach(blocks, threads, work);
   Sums total(knots);
@@ -283,9 +308,8 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
   Eigen::MatrixXd H(size, size), honest(size, size);
   const std::vector<double> factors = balance(surfels, motion, map, config, threads);
   for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
-    // Far matches help only while the guess is far off.
-    const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
-    const Sums sums = sumPatches(surfels, factors, motion, map, config, gate_m, threads);
+    const Reach reach(config, result.iterations);
+    const Sums sums = sumPatches(surfels, factors, motion, map, config, reach, threads);
     H.setZero();
     Eigen::VectorXd g = Eigen::VectorXd::Zero(size);
     fillNormalEquations(sums, H, g);
@@ -300,7 +324,7 @@ RegistrationResult registerScan(const std::vector<Surfel>& surfels, const Surfel
     result.matches = sums.matches;
     result.residual_rms_m = sums.matches > 0 ? std::sqrt(sums.squares_m2 / sums.matches) : 0.0;
     const Vector6d last = step.tail<6>();
-    result.converged = last.head<3>().norm() < 1e-4 && last.tail<3>().norm() < 2e-5;
+    result.converged = reach.final && last.head<3>().norm() < 1e-4 && last.tail<3>().norm() < 2e-5;
     if (result.converged || result.iterations + 1 == config.max_iterations) {
       result.lidar_information = rigidInformation(sums);
       honest = honestInformation(sums, H);
@@ -322,9 +346,9 @@ RegistrationResult registerRigid(const std::vector<Surfel>& surfels, const Surfe
   const std::vector<double> factors =
       balance(surfels, {Time{0}, Time{1}, {guess, guess}}, map, config, threads);
   for (; result.iterations < config.max_iterations && !result.converged; ++result.iterations) {
-    const double gate_m = result.iterations < 2 ? config.gate_m : 0.5 * config.gate_m;
+    const Reach reach(config, result.iterations);
     ScanMotion still{Time{0}, Time{1}, {T_target_source, T_target_source}};
-    const Sums sums = sumPatches(surfels, factors, still, map, config, gate_m, threads);
+    const Sums sums = sumPatches(surfels, factors, still, map, config, reach, threads);
     const Matrix6d H = sums.rigid + prior_information;
     // Both knots hold the same pose, and their gradients add up to that of one rigid pose.
     const Vector6d g =
@@ -334,7 +358,7 @@ RegistrationResult registerRigid(const std::vector<Surfel>& surfels, const Surfe
     result.lidar_information = rigidInformation(sums);
     result.matches = sums.matches;
     result.residual_rms_m = sums.matches > 0 ? std::sqrt(sums.squares_m2 / sums.matches) : 0.0;
-    result.converged = step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 2e-5;
+    result.converged = reach.final && step.head<3>().norm() < 1e-4 && step.tail<3>().norm() < 2e-5;
   }
   result.inlier_share =
       surfels.empty() ? 0.0 : static_cast<double>(result.matches) / static_cast<double>(surfels.size());

@@ -54,8 +54,12 @@ struct RegistrationResult {
 // X_j exp(a Log(X_j^-1 X_j+1)) p; against a cell (mu, C) with normal n the Mahalanobis distance of VGICP,
 // (mu - T p)^T (C + R C_p R^T)^-1 (mu - T p), keeps only its component along n: along the surface a cell's
 // mean says nothing but where the sensor happened to sample, and counting it would freeze motion along a
-// corridor. Gauss-Newton over all knots with a Cauchy kernel; sums are formed in fixed blocks, so that the
-// number of threads does not change a bit. `motion` holds the guess and receives the result.
+// corridor. Gauss-Newton over all knots with a Cauchy kernel, which narrows on upright surfaces from
+// iteration to iteration (graduated non-convexity: Black and Rangarajan, "On the unification of line
+// processes", 1996): a wide one finds the walls from far off, and lets somebody who walks along bend the
+// motion within the scan until wall and person agree. The map's z axis is up. Sums are formed in fixed
+// blocks, so that the number of threads does not change a bit. `motion` holds the guess and receives the
+// result.
 RegistrationResult registerScan(const std::vector<Surfel>& surfels, const SurfelMap& map,
                                 const MotionPrior& prior, const RegistrationConfig& config, int threads,
                                 ScanMotion& motion);
