@@ -22,9 +22,6 @@ namespace {
 constexpr double kFromAfar[] = {100, 30, 10, 3};
 // A neighbour factor over more keyframes than this closes a circle: its effect is not local.
 constexpr int64_t kLocalSpan = 10;
-// Robust factors are quadratic up to the 99 % quantile of chi-square (11.3, 9.2, 6.6 with 3, 2, 1 degrees of
-// freedom); a wrong one pulls less the further it is off (Cauchy).
-constexpr double kCauchy3 = 3.4, kCauchy2 = 3.0, kCauchy1 = 2.6;
 // A loop was verified before it came, while odometry may drift by several times what it says: it gives in to
 // other loops, and to odometry only where LoopLayer would not have let it in.
 constexpr double kCauchyLoop = 10.0;

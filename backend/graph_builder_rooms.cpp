@@ -12,9 +12,6 @@
 namespace sgraphs {
 namespace {
 
-// As in graph_builder.cpp: the 99 % quantile of chi-square with one degree of freedom.
-constexpr double kCauchy1 = 2.6;
-
 template <typename Factor>
 bool erased(std::vector<Factor>& factors, int64_t id) {
   return std::erase_if(factors, [id](const Factor& f) { return f.id == id; }) > 0;

@@ -25,6 +25,8 @@ struct KeyframeNode {
   Matrix6d covariance = Matrix6d::Zero();    // of T_map_body: an upper bound, from when it was the newest
 };
 
+inline constexpr double kPlumbNormal = 0.1;  // |n.z| of a wall, at most
+
 const char* toString(PlaneLabel label);  // "x", "y", "horizontal", as graph.json has it
 
 // A wall face, a floor or a ceiling. The axes of its tangents are u, v = tangentBasis(normal_map).

@@ -8,6 +8,9 @@
 
 namespace sgraphs {
 
+// A storey's picture or grid of more cells is not made: an outlier kilometres away must not take the memory.
+inline constexpr int kMaxStoreyCells = 100'000'000;
+
 // Every storey that the graph or one of its keyframes names (at least f0), with the height of its walking
 // surface: the graph's own where it has one, else measured as the lowest dominant height of map points below
 // the path; has_height stays false where no height stands out.

@@ -17,7 +17,6 @@ constexpr uint8_t kGreyBehindWalls = 165;  // points step back where walls are d
 constexpr double kFullInk = 12;            // occupied voxels of the slice's column that print darkest
 constexpr double kOutlierShare = 0.002;    // of the slice's points may lie outside the picture, on each side
 constexpr double kPathStep_m = 0.05;
-constexpr int kMaxCells = 100'000'000;
 
 std::vector<Eigen::Vector2d> slicePoints(std::span<const MapPoint> map, FloorId floor,
                                          const StoreyHeight& height) {
@@ -57,7 +56,7 @@ Raster makeInk(const std::vector<Eigen::Vector2d>& points, const Paper& extent, 
   ink.cell = kCell_m;
   ink.origin = (extent.min / kCell_m).array().floor() * kCell_m;
   const Eigen::Vector2d size = ((extent.max - ink.origin) / kCell_m).array().ceil();
-  if (size.x() * size.y() > kMaxCells) return ink;
+  if (size.x() * size.y() > kMaxStoreyCells) return ink;
   ink.width = static_cast<int>(size.x());
   ink.height = static_cast<int>(size.y());
   std::vector<int> counts(static_cast<size_t>(ink.width) * ink.height, 0);

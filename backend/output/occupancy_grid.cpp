@@ -17,7 +17,6 @@ constexpr float kHit = 0.85f;
 constexpr float kPass = -0.4f;
 constexpr float kMin = -2.0f;
 constexpr float kMax = 3.5f;
-constexpr int kMaxCells = 100'000'000;
 constexpr int kBeaten = 20;  // cells: 1 m
 
 struct Ray {
@@ -67,7 +66,8 @@ class GridBuilder {
     const Eigen::Vector2d first = (low / resolution).array().floor() - 2;
     grid_.origin_map = first * resolution;
     const Eigen::Vector2d size = ((high - grid_.origin_map) / resolution).array().ceil() + 2;
-    if (size.x() * size.y() > kMaxCells) return;  // an outlier kilometres away: no grid rather than no memory
+    if (size.x() * size.y() > kMaxStoreyCells)
+      return;  // an outlier kilometres away: no grid rather than no memory
     grid_.width = static_cast<int>(size.x());
     grid_.height = static_cast<int>(size.y());
     cells_.assign(static_cast<size_t>(grid_.width) * grid_.height, {});

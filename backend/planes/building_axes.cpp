@@ -11,7 +11,7 @@ namespace sgraphs {
 namespace {
 
 // Walls further off upright than this say nothing of the axes.
-constexpr double kUpright = 0.1;  // |n.up|
+constexpr double kUprightForAxes = 0.1;  // |n.up|
 constexpr double kQuarterTurn_rad = M_PI / 2;
 constexpr int kBins = 45;  // of 2 degrees over a quarter turn
 
@@ -41,7 +41,7 @@ void BuildingAxes::update(const std::map<PlaneId, PlaneNode>& planes, const Eige
   std::vector<Heading> headings;
   std::array<double, kBins> bins{};
   for (const auto& [id, plane] : planes) {
-    if (std::abs(plane.normal_map.dot(up_map)) > kUpright) continue;
+    if (std::abs(plane.normal_map.dot(up_map)) > kUprightForAxes) continue;
     double angle = horizontal.headingOf(plane.normal_map);
     angle -= kQuarterTurn_rad * std::floor(angle / kQuarterTurn_rad);
     const double weight = extentArea(plane);

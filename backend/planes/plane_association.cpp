@@ -16,7 +16,6 @@ namespace {
 constexpr double kPieceOverlap = 0.1;
 // Doors make gaps in a wall sideways; one as high as a slab parts the walls of two storeys.
 constexpr double kMaxGapUp_m = 0.25;
-constexpr double kPlumb = 0.1;  // |n.z| of a wall
 
 struct Match {
   double distance2;
@@ -76,7 +75,7 @@ std::optional<double> planeDistance(const PlaneObservation& z, const SE3& T_map_
   const double slack = 2 * std::sqrt(candidate.pose_covariance.topLeftCorner<3, 3>().trace());
   if (gapBetween(extentOn(plane, z, T_map_body), extentOf(plane)) > gate.max_gap_m + slack)
     return std::nullopt;
-  if (std::abs(plane.normal_map.z()) < kPlumb && gapUp(z, T_map_body, plane) > kMaxGapUp_m + slack)
+  if (std::abs(plane.normal_map.z()) < kPlumbNormal && gapUp(z, T_map_body, plane) > kMaxGapUp_m + slack)
     return std::nullopt;
   return distance2;
 }

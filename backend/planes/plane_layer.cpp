@@ -17,7 +17,7 @@ namespace {
 // A plane that was last seen so many keyframes ago closes a circle when it is seen again.
 constexpr int64_t kCircleSpan = 20;
 // So many keyframes must take two planes for one before they are merged.
-constexpr int kTwinEvidence = 3;
+constexpr int kTwinKeyframes = 3;
 // Planes within this of level or plumb are taken for it.
 constexpr double kUprightWithin_rad = 0.07;
 // A plane is announced again when it changed by more than this.
@@ -253,7 +253,7 @@ void PlaneLayer::countTwins(bool idle) {
   for (const PlaneId a : looked_at)
     for (const auto& [b, plane] : planes) {
       if (a == b || !areTwins(a, b)) continue;
-      if (counted.insert(std::minmax(a, b)).second) twins_[std::minmax(a, b)] += idle ? kTwinEvidence : 1;
+      if (counted.insert(std::minmax(a, b)).second) twins_[std::minmax(a, b)] += idle ? kTwinKeyframes : 1;
     }
 }
 
@@ -265,7 +265,7 @@ void PlaneLayer::mergeTwins() {
       it = twins_.erase(it);
       continue;
     }
-    if (it->second < kTwinEvidence) {
+    if (it->second < kTwinKeyframes) {
       ++it;
       continue;
     }
@@ -364,7 +364,7 @@ void PlaneLayer::mapMended(const std::map<KeyframeId, Matrix6d>& newest) {
   own.chi2 = kMisfitChi2;
   reassociate(own, config_.gate);
   remakeExtents();
-  rounds_to_look_at_all_ = kTwinEvidence;
+  rounds_to_look_at_all_ = kTwinKeyframes;
 }
 
 void PlaneLayer::mapUnbent() {

@@ -8,6 +8,9 @@
 
 namespace sgraphs {
 
+// What is said to lie further off is refused: no map reaches there.
+inline constexpr double kNoMapReaches_m = 1e5;
+
 // What determines the centre of a room or a storey.
 struct CenterEvidence {
   CenterOf of;

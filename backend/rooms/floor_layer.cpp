@@ -11,7 +11,6 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kFar_m = 1e5;  // no map reaches there
 constexpr double kLeastSize_m = 8;
 // A room's offset from the storey's centre is taken anew when it has changed by more than this.
 constexpr double kMovedOffset_m = 1.0;
@@ -22,8 +21,8 @@ double sizeClass(double size_m) {
 }
 
 bool isSound(const FloorObservation& floor) {
-  return floor.id.valid() && floor.center_map.norm() < kFar_m &&
-         (!floor.has_height || std::abs(floor.z_m) < kFar_m);
+  return floor.id.valid() && floor.center_map.norm() < kNoMapReaches_m &&
+         (!floor.has_height || std::abs(floor.z_m) < kNoMapReaches_m);
 }
 
 }  // namespace

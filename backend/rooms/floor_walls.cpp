@@ -8,7 +8,6 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kPlumb = 0.1;       // |n.z| of a wall
 constexpr double kLevel = 0.99;      // n.z of a walking surface
 constexpr double kOpposed = -0.985;  // cosine: within 10 degrees
 constexpr double kAcross = 0.7;      // cosine between the directions of two pairs
@@ -27,7 +26,7 @@ std::vector<Candidate> candidates(const SituationalGraph& graph, FloorId floor,
                                   const std::set<std::pair<PlaneId, PlaneId>>& before) {
   std::vector<const PlaneNode*> walls;
   for (const auto& [id, plane] : graph.planes)
-    if (plane.floor == floor && std::abs(plane.normal_map.z()) < kPlumb) walls.push_back(&plane);
+    if (plane.floor == floor && std::abs(plane.normal_map.z()) < kPlumbNormal) walls.push_back(&plane);
   std::vector<Candidate> found;
   for (size_t i = 0; i < walls.size(); ++i)
     for (size_t j = i + 1; j < walls.size(); ++j) {

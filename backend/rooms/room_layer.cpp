@@ -13,13 +13,12 @@ namespace sgraphs {
 namespace {
 
 // So many rounds in a row must take two rooms for one before their walls are merged: it is not undone.
-constexpr int kTwinEvidence = 2;
-constexpr double kFar_m = 1e5;  // no map reaches there
+constexpr int kTwinRounds = 2;
 // Opposed walls face each other: within 60 degrees.
 constexpr double kOpposed = -0.5;
 
 bool isFinite(const RoomObservation& room) {
-  const auto near = [](const Eigen::Vector2d& p) { return p.norm() < kFar_m; };  // false for NaN
+  const auto near = [](const Eigen::Vector2d& p) { return p.norm() < kNoMapReaches_m; };  // false for NaN
   for (const RoomCorner& corner : room.polygon)
     if (!near(corner.position_map)) return false;
   return near(room.center_map) && near(room.free_center_map) && std::isfinite(room.area_m2);
@@ -87,7 +86,7 @@ bool RoomLayer::mergeDuplicates(std::vector<RoomObservation>& seen) {
       const RoomPair pair{seen[i].id, seen[j].id};
       const auto before = twins_.find(pair);
       const int rounds = 1 + (before == twins_.end() ? 0 : before->second);
-      if (rounds < kTwinEvidence) {
+      if (rounds < kTwinRounds) {
         twins[pair] = rounds;
         continue;
       }
@@ -209,7 +208,7 @@ void RoomLayer::putDoorways(const std::vector<Doorway>& doorways) {
     doorway.a = known(doorway.a);
     doorway.b = known(doorway.b);
     if (!doorway.a.valid()) std::swap(doorway.a, doorway.b);
-    const bool sound = doorway.id.valid() && doorway.position_map.norm() < kFar_m &&
+    const bool sound = doorway.id.valid() && doorway.position_map.norm() < kNoMapReaches_m &&
                        std::isfinite(doorway.width_m) && graph.floors.contains(doorway.floor);
     if (sound && doorway.a.valid() && doorway.a != doorway.b) now.emplace(doorway.id, doorway);
   }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kTolerance = 2.0, kGate = 4.0;  // sigmas
 constexpr double kStays = 1.25;
-constexpr double kPlumb = 0.1;  // |n.z| of a wall
 
 // Of the observed normal, for a turn about the vertical: along t = up x n, as long as n is level.
 double headingVariance(const PlaneObservation& z, const SE3& T_map_body) {
@@ -42,7 +41,8 @@ std::vector<WallRelation> candidates(const RoomObservation& room) {
 double departure(const WallRelation& relation, const SituationalGraph& graph) {
   const Eigen::Vector3d &a = graph.planes.at(relation.a).normal_map,
                         &b = graph.planes.at(relation.b).normal_map;
-  if (std::max(std::abs(a.z()), std::abs(b.z())) > kPlumb) return std::numeric_limits<double>::infinity();
+  if (std::max(std::abs(a.z()), std::abs(b.z())) > kPlumbNormal)
+    return std::numeric_limits<double>::infinity();
   const double sine = relation.square ? a.dot(b) : a.cross(b).z();
   return std::asin(std::clamp(std::abs(sine), 0.0, 1.0));
 }

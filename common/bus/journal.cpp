@@ -81,7 +81,7 @@ std::optional<JournalRecord> JournalReader::next() {
 JournalWriter::JournalWriter(const std::string& path, int64_t good_bytes) : path_(path), bytes_(good_bytes) {
   file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (file_ < 0 || ftruncate(file_, good_bytes) != 0 ||
-      (good_bytes == 0 && write(file_, kMagic, kMagicBytes) != static_cast<ssize_t>(kMagicBytes)))
+      (good_bytes == 0 && ::write(file_, kMagic, kMagicBytes) != static_cast<ssize_t>(kMagicBytes)))
     throw Error("cannot write journal '" + path + "': " + std::strerror(errno));
 }
 
@@ -99,7 +99,7 @@ void JournalWriter::append(const std::string& name, Bus::Bytes bytes) {
   record.insert(record.end(), bytes.begin(), bytes.end());
   const uint32_t crc = crc32(Bus::Bytes(record).subspan(4));
   for (int i = 0; i < 4; ++i) record[static_cast<size_t>(i)] = static_cast<uint8_t>(crc >> (8 * i));
-  if (write(file_, record.data(), record.size()) != static_cast<ssize_t>(record.size()))
+  if (::write(file_, record.data(), record.size()) != static_cast<ssize_t>(record.size()))
     throw Error("cannot write journal '" + path_ + "': " + std::strerror(errno) + "; make room on the disk");
   bytes_ += static_cast<int64_t>(record.size());
 }

@@ -12,7 +12,7 @@ constexpr const char* kStateService = "robot-state";
 constexpr const char* kTimeService = "time-sync";
 constexpr const char* kAuthCall = "auth";
 constexpr const char* kDirectoryCall = "directory";
-constexpr Duration kRest{1'000'000};  // after the robot answered with an error
+constexpr Duration kRestAfterError{1'000'000};  // after the robot answered with an error
 constexpr Duration kResyncInterval{
     5'000'000};                      // at most so often because of a clock that seems to have jumped
 constexpr int kMaxTimeouts = 3;      // in a row, then the connection counts as lost
@@ -54,7 +54,7 @@ std::optional<BodyOdometry> SpotBridge::step(bool poll) {
   } else if (poll && now >= poll_due_) {
     return pollState();
   } else {
-    due_ = std::min({token_.due(), sync_.due(), poll ? poll_due_ : now + kRest});
+    due_ = std::min({token_.due(), sync_.due(), poll ? poll_due_ : now + kRestAfterError});
   }
   return std::nullopt;
 }
@@ -196,7 +196,7 @@ void SpotBridge::onFailure(const std::string& call, CallStatus status, const std
       return token_.onTokenExpired(clock_());
     case CallStatus::kRefused:
       hindrance_ = call + ": " + withoutSecrets(why, credentials_, token_.token());
-      due_ = clock_() + kRest;
+      due_ = clock_() + kRestAfterError;
       return refuse(call, withoutSecrets(why, credentials_, token_.token()));
     case CallStatus::kTimeout:
       ++counts_[call].failed;

@@ -3,7 +3,7 @@
 namespace sgraphs {
 namespace {
 
-constexpr Duration kRest{1'000'000};  // after rounds that led to nothing
+constexpr Duration kRestAfterRounds{1'000'000};  // after rounds that led to nothing
 constexpr Duration kMaxRoundTrip{10'000'000};
 constexpr int kMaxRounds = 25;  // in a row
 // The first round of a later look still reports the exchange of the look before.
@@ -38,11 +38,11 @@ void TimeSync::onReply(const TimeSyncReply& reply, Time now) {
     }
     return;
   }
-  due_ = not_ready_ || ++rounds_ % kMaxRounds == 0 ? now + kRest : now;
+  due_ = not_ready_ || ++rounds_ % kMaxRounds == 0 ? now + kRestAfterRounds : now;
 }
 
 void TimeSync::onFailure(Time now) {
-  due_ = now + kRest;
+  due_ = now + kRestAfterRounds;
 }
 
 void TimeSync::restart(Time now) {

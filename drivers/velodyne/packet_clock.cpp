@@ -4,18 +4,17 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "drivers/velodyne/packet_stamps.h"
+
 namespace sgraphs {
 namespace {
 
-constexpr int64_t kHour_us = 3'600'000'000;
 constexpr int64_t kBlock_us = 1'000'000;
 // Sensor and host may disagree about an interval by this much: packets that wait on their way, clocks apart.
 constexpr int64_t kTolerance_us = 1'000'000;
 constexpr double kToleranceShare = 0.001;
 // Packets within this follow each other without a setting of the sensor's clock between them.
 constexpr int64_t kFollows_us = 200'000;
-// Repeated and overtaken packets step back by less than this.
-constexpr int64_t kMaxReorder_us = 100'000;
 
 // The interval congruent to `interval_us` modulo an hour that is nearest to `near_us`.
 int64_t nearestInterval(int64_t interval_us, int64_t near_us) {

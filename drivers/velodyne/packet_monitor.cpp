@@ -2,14 +2,14 @@
 
 #include <cmath>
 
+#include "drivers/velodyne/packet_stamps.h"
+
 namespace sgraphs {
 namespace {
 
 constexpr double kHdl32Packet_us = 12 * 46.08;
 constexpr double kVlp32Packet_us = 12 * 55.296;
 constexpr double kStampTolerance_us = 4.0;
-// UDP and capture reorder by less than this; a larger step back is the sensor's clock set anew.
-constexpr int64_t kMaxReorder_us = 100'000;
 
 bool foreignStep(double step_us, const Vlp16Packet& packet) {
   if (std::abs(step_us - kHdl32Packet_us) < kStampTolerance_us) return true;

@@ -3,10 +3,11 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "drivers/velodyne/packet_stamps.h"
+
 namespace sgraphs {
 namespace {
 
-constexpr int64_t kHour_us = 3'600'000'000;
 // Packets wait in buffers for less than this between sensor and host, and a host that keeps time at all is
 // right to this. A wider gate would take more of the sensors that count from power-up for synchronised ones:
 // of those one in 180 still is, by chance, and then wrong by less than this.

@@ -20,7 +20,7 @@ namespace sgraphs {
 namespace {
 
 constexpr size_t kMaxDatagramBytes = 2048;  // larger ones are cut, and refused by their size
-constexpr int kMostAtOnce = 256;            // datagrams of one socket before the other's turn
+constexpr int kMostOfOneSocket = 256;       // datagrams before the other's turn
 
 [[noreturn]] void fail(const std::string& what, const std::string& what_to_do) {
   throw Error(what + ": " + std::strerror(errno) + (what_to_do.empty() ? "" : "; " + what_to_do));
@@ -130,7 +130,7 @@ void UdpReceiver::run() {
       if (poll(files.data(), files.size(), -1) < 0 && errno != EINTR) fail("waiting for packets", "");
       if (files.back().revents != 0) return;
       for (Socket& socket : sockets_)
-        for (int i = 0; i < kMostAtOnce && receive(socket); ++i) {
+        for (int i = 0; i < kMostOfOneSocket && receive(socket); ++i) {
         }
     }
   } catch (...) {

@@ -31,6 +31,9 @@ namespace sgraphs {
 
 // Most bytes of a chunked message's bulk, so that a message stays one datagram of at most 60 kB.
 inline constexpr int kMaxChunkBytes = 48000;
+// Coordinates of clouds are 16-bit multiples of this, or of more where a point lies too far off for that.
+inline constexpr double kCloudResolution_m = 0.002;  // the VLP-16's own range step
+inline constexpr double kMaxCloudUnits = 32767;
 inline constexpr int kMaxVelodynePackets = 40;
 inline constexpr int32_t kMessageSchema = 1;
 

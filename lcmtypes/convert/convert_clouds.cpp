@@ -12,8 +12,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "cloud bytes are little-endian");
 
 constexpr size_t kPointBytes = 8;
-constexpr double kResolution_m = 0.002;  // the VLP-16's own range step
-constexpr double kMaxUnits = 32767.0;
 
 // Splits n items into chunks of at most `most`; at least one chunk.
 std::vector<std::pair<size_t, size_t>> chunksOf(size_t n, size_t most) {
@@ -24,7 +22,7 @@ std::vector<std::pair<size_t, size_t>> chunksOf(size_t n, size_t most) {
 }
 
 int16_t quantise(float value, double resolution_m) {
-  return static_cast<int16_t>(std::clamp(std::round(value / resolution_m), -kMaxUnits, kMaxUnits));
+  return static_cast<int16_t>(std::clamp(std::round(value / resolution_m), -kMaxCloudUnits, kMaxCloudUnits));
 }
 
 }  // namespace
@@ -133,7 +131,7 @@ std::vector<keyframe_t> toMessages(const Keyframe& keyframe) {
   for (const SE3& T : keyframe.T_keyframe_body) head.T_keyframe_body.push_back(toMessage(T));
   head.num_scans = static_cast<int32_t>(head.T_keyframe_body.size());
   head.T_body_lidar = toMessage(keyframe.T_body_lidar);
-  head.resolution_m = std::max(kResolution_m, reach / kMaxUnits);
+  head.resolution_m = std::max(kCloudResolution_m, reach / kMaxCloudUnits);
 
   const auto ranges = chunksOf(keyframe.points.size(), kMaxChunkBytes / kPointBytes);
   head.num_chunks = static_cast<int32_t>(ranges.size());

@@ -9,8 +9,6 @@ namespace sgraphs {
 namespace {
 
 constexpr double kVoxel_m = 0.1;
-constexpr double kResolution_m = 0.002;
-constexpr double kMaxUnits = 32767;
 constexpr size_t kPointsPerChunk = kMaxChunkBytes / 6;
 
 // The first point of each voxel.
@@ -37,7 +35,7 @@ std::vector<map_chunk_t> mapChunks(const Keyframe& keyframe) {
   map_chunk_t head{};
   head.header.utime = keyframe.time.us;
   head.keyframe = keyframe.id.value;
-  head.resolution_m = std::max(kResolution_m, static_cast<double>(reach) / kMaxUnits);
+  head.resolution_m = std::max(kCloudResolution_m, static_cast<double>(reach) / kMaxCloudUnits);
   head.num_chunks =
       static_cast<int32_t>(std::max<size_t>(1, (points.size() + kPointsPerChunk - 1) / kPointsPerChunk));
   std::vector<map_chunk_t> chunks(static_cast<size_t>(head.num_chunks), head);

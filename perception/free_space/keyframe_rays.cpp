@@ -6,14 +6,14 @@
 namespace sgraphs {
 namespace {
 
-constexpr float kGroup_m = 0.6f;   // viewpoints nearer than this see the same
-constexpr size_t kMaxGroups = 16;  // later viewpoints join the last
-constexpr float kMargin_m = 3.0f;  // body to viewpoint, at most
+constexpr float kGroup_m = 0.6f;         // viewpoints nearer than this see the same
+constexpr size_t kMaxGroups = 16;        // later viewpoints join the last
+constexpr float kMaxViewpoint_m = 3.0f;  // body to viewpoint, at most
 // Heights over the walking surface between which things stand in the way, body a little tilted.
 constexpr double kFloorNoise_m = 0.05;
 constexpr double kBandTop_m = 2.1;
 constexpr double kEverywhere_m = 1e3;
-constexpr float kLowest_m = -2.0f;
+constexpr float kLowestEnd_m = -2.0f;
 constexpr float kHeight_m = 0.2f;  // of the 32 heights that are told apart
 
 // Viewpoint of each scan, and the group it belongs to.
@@ -43,7 +43,7 @@ KeyframeRays::Ray makeRay(const Eigen::Vector3f& end, uint8_t viewpoint, bool is
 RayThinner::RayThinner(double cell_m, double max_range_m)
     : cell_m_(static_cast<float>(cell_m)),
       max_range_m_(static_cast<float>(max_range_m)),
-      half_(static_cast<int>(std::ceil((max_range_m + kMargin_m) / cell_m))) {}
+      half_(static_cast<int>(std::ceil((max_range_m + kMaxViewpoint_m) / cell_m))) {}
 
 bool RayThinner::isNew(int group, const Eigen::Vector3f& end, bool coarse) {
   int x = static_cast<int>(std::floor(end.x() / cell_m_)) + half_;
@@ -53,7 +53,7 @@ bool RayThinner::isNew(int group, const Eigen::Vector3f& end, bool coarse) {
     x &= ~1;
     y &= ~1;
   }
-  const int z = std::clamp(static_cast<int>((end.z() - kLowest_m) / kHeight_m), 0, 31);
+  const int z = std::clamp(static_cast<int>((end.z() - kLowestEnd_m) / kHeight_m), 0, 31);
   const auto g = static_cast<size_t>(group);
   const auto size = static_cast<size_t>(4 * half_ * half_);
   if (g >= ends_.size()) ends_.resize(g + 1);

@@ -6,16 +6,16 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kMargin_m = 3.5;  // body to viewpoint and a few cells
-constexpr float kStandOff = 0.5f;  // cells before a hit that the ray does not clear: ranges are noisy
-constexpr float kMinChord = 0.3f;  // cells: a ray that only clips a corner has not seen the cell
+constexpr double kViewMargin_m = 3.5;  // body to viewpoint and a few cells
+constexpr float kStandOff = 0.5f;      // cells before a hit that the ray does not clear: ranges are noisy
+constexpr float kMinChord = 0.3f;      // cells: a ray that only clips a corner has not seen the cell
 constexpr double kBodyRadius_m = 0.2;
 constexpr float kHuge = 1e30f;
 
 }  // namespace
 
 RayCaster::RayCaster(double cell_m, double max_range_m) : cell_m_(cell_m) {
-  view_.size = 2 * static_cast<int>(std::ceil((max_range_m + kMargin_m) / cell_m));
+  view_.size = 2 * static_cast<int>(std::ceil((max_range_m + kViewMargin_m) / cell_m));
 }
 
 bool RayCaster::inside(const Eigen::Vector3f& p) const {

@@ -8,11 +8,11 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kRadius_m = 6.0;    // floors farther away are seen at a grazing angle
-constexpr double kHighest_m = 0.10;  // the surface lies lower below the body than this,
-constexpr double kLowest_m = 1.60;   // and not lower than this
+constexpr double kRadius_m = 6.0;           // floors farther away are seen at a grazing angle
+constexpr double kHighestSurface_m = 0.10;  // the surface lies lower below the body than this,
+constexpr double kLowestSurface_m = 1.60;   // and not lower than this
 constexpr double kBin_m = 0.05;
-constexpr size_t kBins = 30;   // (kLowest_m - kHighest_m) / kBin_m
+constexpr size_t kBins = 30;   // (kLowestSurface_m - kHighestSurface_m) / kBin_m
 constexpr size_t kStride = 3;  // every third point tells as much as all
 constexpr int kMinPoints = 30;
 constexpr double kDominant = 0.25;  // of the fullest bin: lower levels than that are no floor
@@ -29,10 +29,10 @@ std::optional<double> SurfaceHeight::measure(const Keyframe& keyframe, const Eig
     const KeyframePoint& p = keyframe.points[i];
     const float height = up.dot(p.position_body);
     const float depth = -height;
-    if (!(depth > kHighest_m && depth < kLowest_m)) continue;
+    if (!(depth > kHighestSurface_m && depth < kLowestSurface_m)) continue;
     if ((p.position_body - height * up).squaredNorm() > kRadius_m * kRadius_m) continue;
     depths.push_back(depth);
-    ++count[std::min(static_cast<size_t>((depth - kHighest_m) / kBin_m), kBins - 1)];
+    ++count[std::min(static_cast<size_t>((depth - kHighestSurface_m) / kBin_m), kBins - 1)];
   }
   // Two neighbouring bins: the level may lie on their border.
   size_t best = 0;
@@ -44,7 +44,7 @@ std::optional<double> SurfaceHeight::measure(const Keyframe& keyframe, const Eig
     if (pair(i) >= kDominant * fullest && pair(i) >= pair(i - 1) && (i + 2 >= kBins || pair(i) > pair(i + 1)))
       best = i;
   if (pair(best) < kMinPoints) return std::nullopt;
-  const double begin = kHighest_m + kBin_m * static_cast<double>(best);
+  const double begin = kHighestSurface_m + kBin_m * static_cast<double>(best);
   std::vector<float> level;
   for (const float d : depths)
     if (d >= begin && d < begin + 2 * kBin_m) level.push_back(d);

@@ -7,7 +7,7 @@ namespace sgraphs {
 namespace {
 
 constexpr size_t kMaxWalls = 300;
-constexpr float kUprightNormal = 0.3F;
+constexpr float kWallNormal = 0.3F;  // |n_z| below
 
 }  // namespace
 
@@ -18,7 +18,7 @@ std::vector<WallPoint> wallsOf(const std::vector<PlacedPlace>& places) {
     const Eigen::Vector3f t = p.T_frame_body.translation.cast<float>();
     for (const PackedPatch& patch : p.place->patches) {
       const Eigen::Vector3f n = R * patch.normal();
-      if (std::abs(n.z()) > kUprightNormal) continue;
+      if (std::abs(n.z()) > kWallNormal) continue;
       out.push_back({(R * patch.mean() + t).head<2>(), std::atan2(n.y(), n.x())});
     }
   }

@@ -6,10 +6,10 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kMinWidth_m = 0.3;    // nobody passes a narrower one
-constexpr double kMaxOff_m = 0.7;      // a passage may be found so far from its wall's face
-constexpr double kOpenEnd = 1.3;       // a side this much wider than its passage has no jambs
-constexpr double kParallel_cos = 0.5;  // of the chord and the wall: jambs may not face each other
+constexpr double kMinWidth_m = 0.3;     // nobody passes a narrower one
+constexpr double kMaxOff_m = 0.7;       // a passage may be found so far from its wall's face
+constexpr double kOpenEnd = 1.3;        // a side this much wider than its passage has no jambs
+constexpr double kAlongWall_cos = 0.5;  // of the chord and the wall: jambs may not face each other
 
 struct Threshold {
   const Wall* face = nullptr;  // null: no wall is known there
@@ -25,7 +25,7 @@ Threshold thresholdAt(const Passage& passage, const RoomShape& room, const std::
   for (size_t i = 0; i < room.polygon.size(); ++i) {
     const Eigen::Vector2d &a = room.polygon[i], &b = room.polygon[(i + 1) % room.polygon.size()];
     const double off = distanceToSegment(middle, a, b);
-    if (off >= kMaxOff_m || std::abs((b - a).normalized().dot(chord)) < kParallel_cos) continue;
+    if (off >= kMaxOff_m || std::abs((b - a).normalized().dot(chord)) < kAlongWall_cos) continue;
     const auto wall = walls.find(room.corners[i].wall);
     const Wall* face = wall == walls.end() ? nullptr : &wall->second;
     if ((best.face && !face) || (off >= least && !(face && !best.face))) continue;

@@ -11,9 +11,6 @@ namespace {
 
 using test::throughBytes;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr int kDatagram = 60'000;
-
 LidarScan someScan(size_t points) {
   LidarScan scan;
   scan.end = Time{1'700'000'000'100'000};
@@ -44,7 +41,7 @@ TEST(ConvertScanTest, RoundTripIsExactFromOnePointToManyChunks) {
   for (const size_t points : {1u, 2823u, 2824u, 28'900u, 131'072u}) {
     const LidarScan scan = someScan(points);
     const auto messages = toMessages(scan);
-    for (const auto& m : messages) EXPECT_LE(m.getEncodedSize(), kDatagram);
+    for (const auto& m : messages) EXPECT_LE(m.getEncodedSize(), test::kDatagramBytes);
     const auto back = fromMessages(throughBytes(messages));
     ASSERT_TRUE(back) << points;
     EXPECT_EQ(back->end, scan.end);
@@ -84,7 +81,7 @@ TEST(ConvertScanTest, WithoutTimesAndRingsTheScanIsDeskewedAndUnorganised) {
 
 TEST(ConvertScanTest, PointsThatAreNotFiniteAreLeftOut) {
   LidarScan scan = someScan(10);
-  scan.points[3].position_lidar.x() = kNaN;
+  scan.points[3].position_lidar.x() = static_cast<float>(test::kNaN);
   scan.points[7].position_lidar.z() = std::numeric_limits<float>::infinity();
   const auto back = fromMessages(throughBytes(toMessages(scan)));
   ASSERT_TRUE(back);
@@ -184,7 +181,7 @@ TEST(ConvertKeyframeTest, RoundTripKeepsAllButAMillimetre) {
   for (const size_t points : {1u, 6000u, 6001u, 50'000u}) {
     const Keyframe k = someKeyframe(points);
     const auto messages = toMessages(k);
-    for (const auto& m : messages) EXPECT_LE(m.getEncodedSize(), kDatagram);
+    for (const auto& m : messages) EXPECT_LE(m.getEncodedSize(), test::kDatagramBytes);
     const auto back = fromMessages(throughBytes(messages));
     ASSERT_TRUE(back) << points;
     expectSameHead(*back, k);

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 
 #include "lcmtypes/convert/convert.h"
 #include "tests/lcmtypes/through_bytes.h"
@@ -9,7 +8,7 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using test::kNaN;
 
 MapPlane somePlane() {
   MapPlane plane;

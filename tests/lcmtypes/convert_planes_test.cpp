@@ -12,8 +12,6 @@ namespace {
 
 using test::throughBytes;
 
-constexpr int kDatagram = 60'000;
-
 KeyframePlanes somePlanes(size_t planes, size_t corners) {
   KeyframePlanes result;
   result.keyframe = KeyframeId{42};
@@ -40,7 +38,7 @@ TEST(ConvertPlanesTest, RoundTripIsExactFromNoPlaneToTheMost) {
   for (const auto& [planes, corners] : {std::pair<size_t, size_t>{0, 3}, {1, 3}, {7, 12}, {64, 48}}) {
     const KeyframePlanes before = somePlanes(planes, corners);
     const keyframe_planes_t message = toMessage(before);
-    EXPECT_LE(message.getEncodedSize(), kDatagram);
+    EXPECT_LE(message.getEncodedSize(), test::kDatagramBytes);
     const auto after = fromMessage(throughBytes(message));
     ASSERT_TRUE(after) << planes;
     EXPECT_EQ(after->keyframe, before.keyframe);

@@ -9,9 +9,9 @@
 namespace sgraphs {
 namespace {
 
+using test::kNaN;
 using test::throughBytes;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SE3 someTransform() {

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "common/bus/bus.h"
 
 namespace sgraphs::test {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr int kDatagramBytes = 60'000;  // that a message must fit into
 
 // The message as its receiver gets it.
 template <typename Message>

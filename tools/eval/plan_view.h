@@ -15,6 +15,8 @@ using Segments = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
 
 inline constexpr Color kPlotText{60, 64, 72};
 inline constexpr Color kPlotGrid{228, 231, 235};
+inline constexpr Color kPlotMissed{215, 35, 45};
+inline constexpr Color kPlotFalse{190, 0, 190};
 
 std::string formatNumber(const char* pattern, double value);
 

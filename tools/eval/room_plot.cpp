@@ -9,10 +9,8 @@
 namespace sgraphs {
 namespace {
 
-constexpr Color kFoundFill{205, 236, 212};
-constexpr Color kFound{30, 140, 65};
-constexpr Color kMissed{215, 35, 45};
-constexpr Color kFalse{190, 0, 190};
+constexpr Color kFoundRoomFill{205, 236, 212};
+constexpr Color kFoundRoom{30, 140, 65};
 constexpr Color kOther{150, 155, 162};  // true, but not asked for
 constexpr double kHatchStep_m = 0.5;
 constexpr double kTick_m = 0.35;
@@ -47,8 +45,8 @@ void label(PlanView& view, const Eigen::Vector2d& at, const std::string& text, C
 }
 
 Color colorOf(const RoomResult::Truth& room) {
-  if (room.estimate) return kFound;
-  return room.asked ? kMissed : kOther;
+  if (room.estimate) return kFoundRoom;
+  return room.asked ? kPlotMissed : kOther;
 }
 
 std::string textOf(const RoomResult::Truth& room) {
@@ -76,13 +74,13 @@ void drawDoorways(PlanView& view, const Evaluation& evaluation, const Plan& plan
     const auto& truth = doorways.truth[i];
     const bool asked = truth.walked_through || truth.of_asked_room;
     const bool judged = doorways.missing.empty();
-    const Color color = truth.estimate ? kFound : asked && judged ? kMissed : kOther;
+    const Color color = truth.estimate ? kFoundRoom : asked && judged ? kPlotMissed : kOther;
     drawThreshold(view, plan, plan.doorways[i], color);
   }
   for (const auto& estimate : doorways.estimates)
     if (estimate.storey == storey)
       view.canvas().disc(estimate.position.head<2>(), 0.4 * view.letter(),
-                         estimate.is_true ? kFound : kFalse);
+                         estimate.is_true ? kFoundRoom : kPlotFalse);
 }
 
 void drawRooms(PlanView& view, const RoomResult& rooms, const Plan& plan, size_t storey) {
@@ -92,7 +90,7 @@ void drawRooms(PlanView& view, const RoomResult& rooms, const Plan& plan, size_t
       if (plan.rooms[i].floor == storey) draw(plan.rooms[i].polygon, rooms.truth[i]);
   };
   each([&](const Corners&, const RoomResult::Truth& room) {
-    if (room.estimate) view.canvas().polygon(rooms.estimates[*room.estimate].polygon, kFoundFill);
+    if (room.estimate) view.canvas().polygon(rooms.estimates[*room.estimate].polygon, kFoundRoomFill);
   });
   view.drawWalls();
   each([&](const Corners& polygon, const RoomResult::Truth& room) {
@@ -100,8 +98,8 @@ void drawRooms(PlanView& view, const RoomResult& rooms, const Plan& plan, size_t
   });
   for (const auto& estimate : rooms.estimates) {
     if (estimate.storey != storey || estimate.why_false.empty() || estimate.polygon.size() < 3) continue;
-    hatch(view.canvas(), estimate.polygon, kFalse, 0.6 * pen);
-    outline(view.canvas(), estimate.polygon, kFalse, pen);
+    hatch(view.canvas(), estimate.polygon, kPlotFalse, 0.6 * pen);
+    outline(view.canvas(), estimate.polygon, kPlotFalse, pen);
   }
 }
 
@@ -113,7 +111,7 @@ void writeNames(PlanView& view, const RoomResult& rooms, const Plan& plan, size_
   for (const auto& estimate : rooms.estimates)
     if (estimate.storey == storey && !estimate.why_false.empty() && estimate.polygon.size() >= 3)
       label(view, polygonCentroid(estimate.polygon) - Eigen::Vector2d(0, 2.2 * view.letter()),
-            estimate.id + " false", kFalse);
+            estimate.id + " false", kPlotFalse);
 }
 
 }  // namespace
@@ -125,9 +123,9 @@ std::string roomPlot(const Evaluation& evaluation, const Truth& truth, size_t st
   drawRooms(view, rooms, *truth.plan, storey);
   drawDoorways(view, evaluation, *truth.plan, storey);
   writeNames(view, rooms, *truth.plan, storey);
-  view.legend("found, with IoU", kFound);
-  view.legend("missed", kMissed);
-  view.legend("false", kFalse);
+  view.legend("found, with IoU", kFoundRoom);
+  view.legend("missed", kPlotMissed);
+  view.legend("false", kPlotFalse);
   view.legend("not asked for", kOther);
   return view.canvas().encode();
 }

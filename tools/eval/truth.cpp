@@ -21,7 +21,7 @@ TrueWall wallOf(const nlohmann::json& json) {
   return {{a[0], a[1]}, {b[0], b[1]}, json.value("thickness", 0.0), z[0], z[1], json.value("glass", false)};
 }
 
-SE3 transformOf(const nlohmann::json& json) {
+SE3 mountingOf(const nlohmann::json& json) {
   const auto t = json.at("xyz").get<std::array<double, 3>>();
   const auto q = json.value("qxyzw", std::array<double, 4>{0, 0, 0, 1});
   return {Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized(), {t[0], t[1], t[2]}};
@@ -78,7 +78,7 @@ Plan readPlan(const std::string& path) {
     const auto list = [&](const char* key) { return json.value(key, nlohmann::json::array()); };
     Plan plan;
     plan.floors_z_m = json.value("floors", std::vector<double>{});
-    if (json.contains("T_body_lidar")) plan.T_body_lidar = transformOf(json.at("T_body_lidar"));
+    if (json.contains("T_body_lidar")) plan.T_body_lidar = mountingOf(json.at("T_body_lidar"));
     for (const auto& wall : list("walls")) plan.walls.push_back(wallOf(wall));
     for (const auto& window : list("windows"))
       if (const auto pane = paneOf(window, plan.walls)) plan.panes.push_back(*pane);

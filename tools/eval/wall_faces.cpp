@@ -8,7 +8,7 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kOnSurface_m = 0.01;
+constexpr double kExposedWithin_m = 0.01;
 constexpr double kRange_m = 20;
 constexpr double kMaxElevation_rad = 15 * M_PI / 180;  // of a VLP-16's lasers
 constexpr double kMinIncidence_rad = 5 * M_PI / 180;   // flatter rays return nothing
@@ -40,7 +40,7 @@ TrueFace faceOf(const Plan& plan, size_t index, bool left, const MeshQuery& mesh
       const double t = (static_cast<double>(row) + 0.5) / static_cast<double>(rows);
       FaceSample sample{{s * face.length(), wall.z_low_m + t * (wall.z_high_m - wall.z_low_m)}, false, 0};
       // Whether the mesh holds panes is not said: on a pane every place is one that may be found.
-      sample.exposed = wall.glass || mesh.distance(face.point(sample.at), kOnSurface_m).has_value();
+      sample.exposed = wall.glass || mesh.distance(face.point(sample.at), kExposedWithin_m).has_value();
       face.samples.push_back(sample);
     }
   return face;

@@ -7,11 +7,9 @@
 namespace sgraphs {
 namespace {
 
-constexpr Color kFound{30, 160, 70};
-constexpr Color kMissed{215, 35, 45};
+constexpr Color kFoundFace{30, 160, 70};
 constexpr Color kDoubled{245, 140, 0};
 constexpr Color kEstimate{20, 60, 190};
-constexpr Color kFalse{190, 0, 190};
 constexpr double kFacePen_m = 0.05;
 constexpr double kEstimatePen_m = 0.02;
 constexpr double kEstimateShift_m = 0.09;  // towards the side it was seen from, beside its face
@@ -51,7 +49,7 @@ void drawEstimate(Canvas& canvas, const EstimatedWall& wall, bool is_false) {
   const Eigen::Vector2d tick = kEstimateShift_m * normal;
   const Eigen::Vector2d a = at + low * along, b = at + high * along;
   const Eigen::Vector2d outline[] = {a + tick, a, b, b + tick};
-  canvas.polyline(outline, is_false ? kFalse : kEstimate, is_false ? kFacePen_m : kEstimatePen_m);
+  canvas.polyline(outline, is_false ? kPlotFalse : kEstimate, is_false ? kFacePen_m : kEstimatePen_m);
 }
 
 }  // namespace
@@ -67,19 +65,19 @@ std::string wallPlot(const Evaluation& evaluation, const Truth& truth, Storey st
     if (walls.doubled[f])
       drawFace(view.canvas(), walls.faces[f], kDoubled);
     else if (walls.found[f])
-      drawFace(view.canvas(), walls.faces[f], kFound);
+      drawFace(view.canvas(), walls.faces[f], kFoundFace);
     else if (walls.asked(f))
-      drawFace(view.canvas(), walls.faces[f], kMissed);
+      drawFace(view.canvas(), walls.faces[f], kPlotMissed);
   }
   for (size_t w = 0; w < walls.walls.size(); ++w)
     if (isOn(storey, walls.walls[w].centroid.z(), floors))
       drawEstimate(view.canvas(), walls.walls[w],
                    std::count(walls.false_walls.begin(), walls.false_walls.end(), w) > 0);
-  view.legend("found", kFound);
-  view.legend("missed", kMissed);
+  view.legend("found", kFoundFace);
+  view.legend("missed", kPlotMissed);
   view.legend("doubled", kDoubled);
   view.legend("estimate", kEstimate);
-  view.legend("false", kFalse);
+  view.legend("false", kPlotFalse);
   return view.canvas().encode();
 }
 

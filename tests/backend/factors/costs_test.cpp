@@ -20,9 +20,13 @@
 #include "backend/factors/same_height_cost.h"
 #include "backend/factors/unit_vector_manifold.h"
 #include "backend/factors/up_cost.h"
+#include "tests/backend/factors/factor_states.h"
 
 namespace sgraphs {
 namespace {
+
+using test::gaussian;
+using test::randomPose;
 
 enum class Block { kPose, kPlane, kUnitVector, kCenter, kHeight };
 
@@ -31,31 +35,18 @@ enum class Maps { kAny, kLevel, kShifted };
 
 using States = std::vector<Eigen::VectorXd>;
 
-Eigen::VectorXd gaussian(int size, double sigma, std::mt19937& random) {
-  std::normal_distribution<double> normal(0.0, sigma);
-  Eigen::VectorXd v(size);
-  for (int i = 0; i < size; ++i) v(i) = normal(random);
-  return v;
-}
-
-Eigen::VectorXd randomPose(std::mt19937& random) {
-  Eigen::VectorXd x = gaussian(7, 3.0, random);
-  x.tail<4>().normalize();
-  return x;
-}
-
 Eigen::Vector3d randomDirection(std::mt19937& random) {
   return gaussian(3, 1.0, random).normalized();
 }
 
-Eigen::VectorXd stored(const PlaneState& plane) {
+Eigen::VectorXd stateOf(const PlaneState& plane) {
   Eigen::VectorXd x(7);
   PlaneManifold::store(plane, x.data());
   return x;
 }
 
 Eigen::VectorXd randomPlane(const Eigen::Vector3d& normal, std::mt19937& random) {
-  return stored(PlaneState{normal, gaussian(1, 0.5, random)(0), gaussian(3, 3.0, random)});
+  return stateOf(PlaneState{normal, gaussian(1, 0.5, random)(0), gaussian(3, 3.0, random)});
 }
 
 Matrix6d randomCovariance(std::mt19937& random) {
@@ -237,7 +228,7 @@ std::vector<Residual> residuals() {
                    const Eigen::VectorXd a = randomPlane(up, random);
                    const double height = up.dot(Eigen::Vector3d(a.data() + 4) - a(3) * up);
                    const Eigen::Vector3d anchor = gaussian(3, 3.0, random);
-                   return States{a, stored(PlaneState{-up, height - up.dot(anchor), anchor}), up};
+                   return States{a, stateOf(PlaneState{-up, height - up.dot(anchor), anchor}), up};
                  },
                  [](const States&, double scale) { return SameHeightCost::Create(0.02 * scale); },
                  0.4});
@@ -289,7 +280,7 @@ class CostTest : public testing::TestWithParam<Residual> {
   }
 
   static Eigen::VectorXd inOtherMap(const PlaneState& plane, const SE3& T_other_map) {
-    return stored(
+    return stateOf(
         PlaneState{T_other_map.rotation * plane.normal, plane.offset_m, T_other_map * plane.anchor});
   }
 

@@ -7,28 +7,19 @@
 #include "backend/factors/plane_manifold.h"
 #include "backend/factors/pose_manifold.h"
 #include "backend/factors/unit_vector_manifold.h"
+#include "tests/backend/factors/factor_states.h"
 
 namespace sgraphs {
 namespace {
 
+using test::gaussian;
+using test::randomPose;
+
 constexpr double kTolerance = 1e-9;
 constexpr int kTrials = 20;
 
-Eigen::VectorXd randomVector(int size, double scale, std::mt19937& random) {
-  std::normal_distribution<double> normal(0.0, scale);
-  Eigen::VectorXd v(size);
-  for (int i = 0; i < size; ++i) v(i) = normal(random);
-  return v;
-}
-
-Eigen::VectorXd randomPose(std::mt19937& random) {
-  Eigen::VectorXd x = randomVector(7, 3.0, random);
-  x.tail<4>().normalize();
-  return x;
-}
-
 Eigen::VectorXd randomPlane(std::mt19937& random) {
-  Eigen::VectorXd x = randomVector(PlaneManifold::kAmbientSize, 2.0, random);
+  Eigen::VectorXd x = gaussian(PlaneManifold::kAmbientSize, 2.0, random);
   x.head<3>().normalize();
   return x;
 }
@@ -41,9 +32,9 @@ void expectInvariants(const std::function<Eigen::VectorXd(std::mt19937&)>& sampl
   const Manifold manifold;
   for (int trial = 0; trial < kTrials; ++trial) {
     const ceres::Vector x = sample(random);
-    const ceres::Vector delta = randomVector(manifold.TangentSize(), 0.5, random);
+    const ceres::Vector delta = gaussian(manifold.TangentSize(), 0.5, random);
     ceres::Vector y(manifold.AmbientSize());
-    const ceres::Vector to_y = randomVector(manifold.TangentSize(), 0.7, random);
+    const ceres::Vector to_y = gaussian(manifold.TangentSize(), 0.7, random);
     manifold.Plus(x.data(), to_y.data(), y.data());
     EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD(manifold, x, delta, y, kTolerance);
   }
@@ -55,7 +46,7 @@ TEST(PoseManifoldTest, InvariantsHold) {
 
 TEST(UnitVectorManifoldTest, InvariantsHold) {
   expectInvariants<UnitVectorManifold>(
-      [](std::mt19937& random) { return randomVector(3, 1.0, random).normalized(); });
+      [](std::mt19937& random) { return gaussian(3, 1.0, random).normalized(); });
 }
 
 TEST(PlaneManifoldTest, InvariantsHold) {
@@ -66,7 +57,7 @@ TEST(PoseManifoldTest, PlusIsTheRightPerturbationOfSe3) {
   std::mt19937 random(2);
   for (int trial = 0; trial < kTrials; ++trial) {
     const Eigen::VectorXd x = randomPose(random);
-    const Vector6d delta = randomVector(6, 0.6, random);
+    const Vector6d delta = gaussian(6, 0.6, random);
     std::array<double, 7> y{};
     PoseManifold().Plus(x.data(), delta.data(), y.data());
     const SE3 expected = PoseManifold::load(x.data()) * se3Exp(delta);
@@ -113,7 +104,7 @@ TEST(PlaneStateTest, AnotherAnchorIsTheSamePlane) {
   std::mt19937 random(6);
   const Eigen::VectorXd x = randomPlane(random);
   const PlaneState plane = PlaneManifold::load(x.data());
-  const Eigen::Vector3d p = randomVector(3, 5.0, random), q = randomVector(3, 5.0, random);
+  const Eigen::Vector3d p = gaussian(3, 5.0, random), q = gaussian(3, 5.0, random);
   const PlaneState moved = plane.anchoredAt(p);
   EXPECT_EQ(moved.anchor, p);
   EXPECT_NEAR(moved.distance(q), plane.distance(q), 1e-12);
@@ -124,7 +115,7 @@ TEST(PlaneStateTest, CovarianceMovesWithTheAnchor) {
   std::mt19937 random(7);
   const Eigen::VectorXd x = randomPlane(random);
   const PlaneState plane = PlaneManifold::load(x.data());
-  const Eigen::Vector3d p = randomVector(3, 5.0, random);
+  const Eigen::Vector3d p = gaussian(3, 5.0, random);
   Eigen::Matrix3d J;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d delta = 1e-6 * Eigen::Vector3d::Unit(i);
@@ -136,7 +127,7 @@ TEST(PlaneStateTest, CovarianceMovesWithTheAnchor) {
     PlaneManifold().Minus(moved.data(), reference.data(), difference.data());
     J.col(i) = difference / 1e-6;
   }
-  const Eigen::Matrix3d root = Eigen::Map<const Eigen::Matrix3d>(randomVector(9, 0.1, random).eval().data());
+  const Eigen::Matrix3d root = Eigen::Map<const Eigen::Matrix3d>(gaussian(9, 0.1, random).eval().data());
   const Eigen::Matrix3d covariance = root * root.transpose();
   const Eigen::Matrix3d expected = J * covariance * J.transpose();
   EXPECT_LT((movedCovariance(covariance, plane.normal, plane.anchor, p) - expected).norm(),
@@ -153,7 +144,7 @@ TEST(UnitVectorManifoldTest, OppositeDirectionIsHalfATurnAway) {
 TEST(TangentBasisTest, IsOrthonormalAndRightHandedEverywhere) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 200; ++trial) {
-    Eigen::Vector3d n = randomVector(3, 1.0, random).normalized();
+    Eigen::Vector3d n = gaussian(3, 1.0, random).normalized();
     if (trial < 6) n = (trial % 2 ? -1.0 : 1.0) * Eigen::Vector3d::Unit(trial / 2);
     const TangentBasis B = tangentBasis(n);
     EXPECT_LT((B.transpose() * B - Eigen::Matrix2d::Identity()).norm(), 1e-12);

@@ -7,29 +7,17 @@
 
 #include "backend/factors/faces_cost.h"
 #include "backend/factors/lateral_part.h"
-#include "backend/factors/plane_manifold.h"
 #include "backend/factors/plane_up_cost.h"
-#include "backend/factors/pose_manifold.h"
 #include "backend/factors/pose_plane_cost.h"
 #include "backend/factors/same_height_cost.h"
 #include "backend/factors/unit_vector_manifold.h"
+#include "tests/backend/factors/factor_states.h"
 
 namespace sgraphs {
 namespace {
 
-using Storage = std::array<double, 7>;
-
-Storage stored(const PlaneState& plane) {
-  Storage x{};
-  PlaneManifold::store(plane, x.data());
-  return x;
-}
-
-Storage stored(const SE3& T) {
-  Storage x{};
-  PoseManifold::store(T, x.data());
-  return x;
-}
+using test::Storage;
+using test::stored;
 
 double evaluateNorm(const ceres::CostFunction& cost, const std::vector<const double*>& x) {
   Eigen::VectorXd r(cost.num_residuals());

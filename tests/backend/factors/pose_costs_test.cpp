@@ -3,28 +3,24 @@
 
 #include <array>
 #include <limits>
-#include <vector>
 
-#include "backend/factors/pose_manifold.h"
 #include "backend/factors/relative_pose_cost.h"
 #include "backend/factors/up_cost.h"
+#include "tests/backend/factors/factor_states.h"
 
 namespace sgraphs {
 namespace {
 
-std::vector<double> stored(const SE3& T) {
-  std::vector<double> x(7);
-  PoseManifold::store(T, x.data());
-  return x;
-}
+using test::Storage;
+using test::stored;
 
 // 3 cm at sigma 1 cm and 2 mrad at sigma 1 mrad: chi2 is 9 + 4.
 TEST(RelativePoseCostTest, ResidualIsInStandardDeviations) {
   Vector6d sigma;
   sigma << 0.01, 0.01, 0.01, 0.001, 0.001, 0.001;
   const auto cost = RelativePoseCost::Create(SE3(), sigma.cwiseAbs2().asDiagonal());
-  const std::vector<double> a = stored(SE3());
-  const std::vector<double> b = stored({so3Exp({0, 0, 0.002}), {0.03, 0, 0}});
+  const Storage a = stored(SE3());
+  const Storage b = stored({so3Exp({0, 0, 0.002}), {0.03, 0, 0}});
   const std::array<const double*, 2> x{a.data(), b.data()};
   Vector6d r;
   ASSERT_TRUE(cost->Evaluate(x.data(), r.data(), nullptr));
@@ -44,8 +40,7 @@ TEST(UpCostTest, TiltOfOneSigmaIsOneAndHeadingIsFree) {
   const auto cost = UpCost::Create(Eigen::Vector3d::UnitZ(), 0.01);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   for (const double heading : {0.0, 1.0, 2.5}) {
-    const std::vector<double> T =
-        stored({so3Exp({0, 0, heading}) * so3Exp({0.01, 0, 0}), Eigen::Vector3d(4, 5, 6)});
+    const Storage T = stored({so3Exp({0, 0, heading}) * so3Exp({0.01, 0, 0}), Eigen::Vector3d(4, 5, 6)});
     const std::array<const double*, 2> x{T.data(), up.data()};
     Eigen::Vector2d r;
     ASSERT_TRUE(cost->Evaluate(x.data(), r.data(), nullptr));
@@ -58,7 +53,7 @@ TEST(UpCostTest, GrowsUpToNinetyDegrees) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   double last = -1.0;
   for (int degrees = 0; degrees <= 90; degrees += 5) {
-    const std::vector<double> T = stored({so3Exp({0, degrees * M_PI / 180.0, 0}), Eigen::Vector3d::Zero()});
+    const Storage T = stored({so3Exp({0, degrees * M_PI / 180.0, 0}), Eigen::Vector3d::Zero()});
     const std::array<const double*, 2> x{T.data(), up.data()};
     Eigen::Vector2d r;
     ASSERT_TRUE(cost->Evaluate(x.data(), r.data(), nullptr));

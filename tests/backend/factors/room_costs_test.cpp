@@ -9,20 +9,15 @@
 #include "backend/factors/center_walls_cost.h"
 #include "backend/factors/floor_height_cost.h"
 #include "backend/factors/floor_room_cost.h"
-#include "backend/factors/plane_manifold.h"
 #include "backend/factors/pose_manifold.h"
 #include "backend/factors/room_shape_cost.h"
+#include "tests/backend/factors/factor_states.h"
 
 namespace sgraphs {
 namespace {
 
-using Storage = std::array<double, 7>;
-
-Storage stored(const PlaneState& plane) {
-  Storage x{};
-  PlaneManifold::store(plane, x.data());
-  return x;
-}
+using test::Storage;
+using test::stored;
 
 double evaluate(const ceres::CostFunction& cost, const std::vector<const double*>& x) {
   Eigen::VectorXd r(cost.num_residuals());

@@ -9,7 +9,7 @@
 namespace sgraphs {
 namespace {
 
-const FloorNode kFloor{{0}, {0, 0}, true, -0.5};
+using test::kFloor;
 
 FloorPlan planOf(const test::SyntheticRun& run) {
   return makeFloorPlan(run.graph, kFloor, buildMap(run.graph, 0.05), run.record.scans);

@@ -8,8 +8,8 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kFloorZ_m = -0.5;
-const FloorNode kFloor{{0}, {0, 0}, true, kFloorZ_m};
+using test::kFloor;
+using test::kFloorZ_m;
 
 PlaneNode wallAt(int64_t id, double y_m, double half_height_m = 1.4) {
   return test::rectanglePlane({id}, PlaneLabel::kY, Eigen::Vector3d::UnitY(),

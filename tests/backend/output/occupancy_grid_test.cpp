@@ -7,7 +7,7 @@
 namespace sgraphs {
 namespace {
 
-const FloorNode kFloor{{0}, {0, 0}, true, -0.5};
+using test::kFloor;
 
 // Share of the cells along a segment that hold `value`.
 double share(const OccupancyGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, Occupancy value) {

@@ -7,6 +7,10 @@
 
 namespace sgraphs::test {
 
+// Of the synthetic storey.
+inline constexpr double kFloorZ_m = -0.5;
+inline const FloorNode kFloor{{0}, {0, 0}, true, kFloorZ_m};
+
 // A box room seen from a square path: everything about it is known in closed form.
 struct BoxRoom {
   Eigen::Vector3d min{-1.0, -1.5, -0.5};  // map's origin is the body, half a metre over the ground

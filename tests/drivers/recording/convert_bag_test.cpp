@@ -24,7 +24,7 @@ using test::Wire;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr int64_t kStart_us = 472'222 * int64_t{3'600'000'000} + 12'000'000;
+constexpr int64_t kBagStart_us = 472'222 * int64_t{3'600'000'000} + 12'000'000;
 
 // A kind of bag.
 struct Format {
@@ -46,14 +46,14 @@ struct Format {
 const Format kRos1{"Ros1", Wire::kRos1};
 const Format kRos2{"Ros2", Wire::kCdrLittle};
 
-struct Result {
+struct BagResult {
   ConvertReport report;
   test::LogContents log;
 };
 
-Result convert(const fs::path& folder, ConvertOptions options) {
+BagResult convert(const fs::path& folder, ConvertOptions options) {
   options.output = folder / "out.lcmlog";
-  Result result;
+  BagResult result;
   result.report = convertRecording(options, [](double) {});
   result.log = test::readLog(options.output);
   EXPECT_TRUE(std::is_sorted(result.log.stamps.begin(), result.log.stamps.end()));
@@ -80,7 +80,7 @@ SE3 poseAt(int i) {
 std::vector<BagMessage> odometryMessages(Wire wire, int count) {
   std::vector<BagMessage> messages;
   for (int i = 0; i < count; ++i) {
-    const int64_t time_us = kStart_us + 20'000 * i;
+    const int64_t time_us = kBagStart_us + 20'000 * i;
     // They arrive late and unevenly; their own stamps are what counts.
     messages.push_back({"/odom", kOdometryType, time_us + 5'000 + 900 * (i % 3),
                         test::odometryMessage(wire, time_us, poseAt(i))});
@@ -99,7 +99,7 @@ struct Packets {
     std::vector<test::StampedPacket> scan;
     for (int i = 0; i < count; ++i) {
       test::PcapBuilder::Frame frame;
-      frame.time_us = kStart_us - 12'000'000 + sensor.timeUs() + 1500;
+      frame.time_us = kBagStart_us - 12'000'000 + sensor.timeUs() + 1500;
       const auto bytes = sensor.next();
       pcap.addUdp(frame, bytes);
       scan.push_back({frame.time_us, {bytes.begin(), bytes.end()}});
@@ -125,11 +125,11 @@ TEST_P(BagFormatTest, PacketsAreThoseOfACapture) {
   const Packets packets(GetParam().wire, 400);
   const ConvertOptions options =
       GetParam().write(folder, packets.messages + odometryMessages(GetParam().wire, 30));
-  const Result bag = convert(folder, options);
+  const BagResult bag = convert(folder, options);
   test::writeBytes(folder / "in.pcap", packets.pcap.bytes());
   ConvertOptions capture;
   capture.pcap = folder / "in.pcap";
-  const Result pcap = convert(folder, capture);
+  const BagResult pcap = convert(folder, capture);
 
   EXPECT_EQ(bag.report.packets.accepted, 400);
   EXPECT_EQ(bag.report.topics.lidar.name, "/velodyne_packets");
@@ -148,7 +148,7 @@ TEST_P(BagFormatTest, PacketsAreThoseOfACapture) {
 TEST_P(BagFormatTest, OdometryKeepsItsStampsPosesAndTwists) {
   const fs::path folder = test::freshFolder();
   const Packets packets(GetParam().wire, 400);
-  const Result result =
+  const BagResult result =
       convert(folder, GetParam().write(folder, packets.messages + odometryMessages(GetParam().wire, 30)));
   EXPECT_EQ(result.report.topics.odometry.name, "/odom");
   EXPECT_EQ(result.report.body_frame, "base_link");
@@ -156,7 +156,7 @@ TEST_P(BagFormatTest, OdometryKeepsItsStampsPosesAndTwists) {
   ASSERT_EQ(result.log.odometry.size(), 30u);
   for (int i = 0; i < 30; ++i) {
     const spot_odometry_t& m = result.log.odometry[static_cast<size_t>(i)];
-    EXPECT_EQ(m.header.utime, kStart_us + 20'000 * i);
+    EXPECT_EQ(m.header.utime, kBagStart_us + 20'000 * i);
     for (int a = 0; a < 3; ++a) EXPECT_EQ(m.T_odom_body.xyz[a], poseAt(i).translation[a]);
     EXPECT_NEAR(m.T_odom_body.wxyz[0], poseAt(i).rotation.w(), 1e-15);
     EXPECT_NEAR(m.T_odom_body.wxyz[3], poseAt(i).rotation.z(), 1e-15);
@@ -181,7 +181,7 @@ std::vector<BagMessage> scans(Wire wire, int count, const std::string& topic = "
   std::vector<BagMessage> messages;
   for (int i = 0; i < count; ++i) {
     test::CloudBuilder cloud;
-    cloud.stamp_us = kStart_us + 100'000 * i;
+    cloud.stamp_us = kBagStart_us + 100'000 * i;
     cloud.width = 5000;
     cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"time", 12, 7}, {"ring", 16, 4}};
     cloud.point_step = 18;
@@ -203,13 +203,13 @@ class BagCloudTest : public testing::TestWithParam<Format> {};
 
 TEST_P(BagCloudTest, CloudsKeepPointsTimesAndRings) {
   const fs::path folder = test::freshFolder();
-  const Result result = convert(folder, GetParam().write(folder, scans(GetParam().wire, 3)));
+  const BagResult result = convert(folder, GetParam().write(folder, scans(GetParam().wire, 3)));
   EXPECT_EQ(result.report.scans, 3);
   EXPECT_TRUE(result.report.warnings.empty());
   ASSERT_EQ(result.log.points.size(), 6u);  // two chunks each
   const auto sweep = fromMessages(std::span(result.log.points).subspan(4, 2));
   ASSERT_TRUE(sweep);
-  EXPECT_EQ(sweep->end.us, kStart_us + 200'000);
+  EXPECT_EQ(sweep->end.us, kBagStart_us + 200'000);
   EXPECT_FALSE(sweep->deskewed);
   EXPECT_EQ(sweep->num_rings, 16);
   ASSERT_EQ(sweep->points.size(), 5000u);
@@ -245,7 +245,7 @@ TEST(ConvertBagTest, AFolderOfPartsIsOneRecordingInOrderOfTime) {
   test::writeDb3(folder / "walk" / "walk_10.db3", {all[2]});
   ConvertOptions options;
   options.db3 = folder / "walk";
-  const Result result = convert(folder, options);
+  const BagResult result = convert(folder, options);
   EXPECT_EQ(result.report.scans, 3);
   EXPECT_TRUE(result.report.warnings.empty());
 }
@@ -265,7 +265,7 @@ TEST(ConvertBagTest, SeveralTopicsAreListedAndOneCanBeChosen) {
       failureOf<UsageError>(folder, options),
       AllOf(HasSubstr("--odometry-topic"), HasSubstr("/odom (nav_msgs/Odometry)"), HasSubstr("/wheels")));
   options.topics.odometry = "/wheels";
-  const Result result = convert(folder, options);
+  const BagResult result = convert(folder, options);
   EXPECT_EQ(result.report.scans, 2);
   EXPECT_EQ(result.report.odometry, 10);
   options.topics.odometry = "none";
@@ -283,7 +283,7 @@ TEST(ConvertBagTest, ARowFileTakesThePlaceOfTheBagsOdometry) {
   test::writeText(folder / "odom.tum", "1700000412.0 1 2 3 0 0 0 1\n1700000412.1 1 2 3 0 0 0 1\n");
   options.odometry_tum = folder / "odom.tum";
   EXPECT_THAT(failureOf(folder, options), HasSubstr("share no time"));
-  const std::string at = std::to_string(kStart_us / 1'000'000);
+  const std::string at = std::to_string(kBagStart_us / 1'000'000);
   test::writeText(folder / "odom.tum", at + ".0 1 2 3 0 0 0 1\n" + at + ".1 1 2 3 0 0 0 1\n");
   EXPECT_EQ(convert(folder, options).report.odometry, 2);
 }
@@ -293,7 +293,7 @@ TEST(ConvertBagTest, MessagesOfAnotherKindAreCounted) {
   auto messages = scans(kRos2.wire, 3) + odometryMessages(kRos2.wire, 10);
   messages[0].bytes.resize(1000);
   ConvertOptions options = kRos2.write(folder, messages);
-  const Result result = convert(folder, options);
+  const BagResult result = convert(folder, options);
   ASSERT_EQ(result.report.warnings.size(), 1u);
   EXPECT_THAT(result.report.warnings[0], AllOf(HasSubstr("1 message(s) left out"), HasSubstr("/")));
 

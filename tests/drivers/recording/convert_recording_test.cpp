@@ -40,7 +40,7 @@ class Capture {
   }
 };
 
-struct Result {
+struct PcapResult {
   ConvertReport report;
   test::LogContents log;
   fs::path folder;
@@ -53,11 +53,11 @@ ConvertReport convertTo(const fs::path& folder, ConvertOptions options) {
   return convertRecording(options, ignoreProgress);
 }
 
-Result convertPcap(const std::vector<uint8_t>& bytes, ConvertOptions options = {}) {
+PcapResult convertPcap(const std::vector<uint8_t>& bytes, ConvertOptions options = {}) {
   const fs::path folder = test::freshFolder();
   test::writeBytes(folder / "in.pcap", bytes);
   options.pcap = folder / "in.pcap";
-  Result result;
+  PcapResult result;
   result.report = convertTo(folder, options);
   result.log = test::readLog(folder / "out.lcmlog");
   result.folder = folder;
@@ -86,7 +86,7 @@ TEST(ConvertRecordingTest, PacketsKeepTheSensorsTimeOverTheHour) {
   Capture capture;
   capture.sensor.time_us = 3'599.9e6;
   capture.add(200);
-  const Result result = convertPcap(capture.pcap.bytes());
+  const PcapResult result = convertPcap(capture.pcap.bytes());
   EXPECT_EQ(result.report.packets.accepted, 200);
   EXPECT_EQ(result.report.packets.lost, 0);
   EXPECT_EQ(result.report.revolutions, 1);
@@ -108,7 +108,7 @@ TEST(ConvertRecordingTest, VlanTagsPositionPacketsAndOthersAreNoHindrance) {
     capture.pcap.addUdp(other, std::vector<uint8_t>(60));
     capture.pcap.addFrame(capture.frame.time_us, std::vector<uint8_t>(60, 0x08));  // not IPv4
   }
-  const Result result = convertPcap(capture.pcap.bytes());
+  const PcapResult result = convertPcap(capture.pcap.bytes());
   EXPECT_EQ(result.report.packets.accepted, 200);
   EXPECT_EQ(result.report.packets.position, 16);
   EXPECT_EQ(result.report.packets.other_datagrams, 100);
@@ -125,7 +125,7 @@ TEST(ConvertRecordingTest, FaultsAreCountedAndLeftOut) {
     if (i % 20 == 0) capture.pcap.addUdp(capture.frame, std::vector<uint8_t>(1000));
     if (i == 50) capture.sensor.skip(3);
   }
-  const Result result = convertPcap(capture.pcap.bytes());
+  const PcapResult result = convertPcap(capture.pcap.bytes());
   const auto rejected = [&](PacketFault fault) {
     return result.report.packets.rejected[static_cast<size_t>(fault)];
   };
@@ -143,7 +143,7 @@ TEST(ConvertRecordingTest, PacketsInWrongOrderAreLeftOut) {
   const auto late = test::TurningSensor().next();
   capture.pcap.addUdp(capture.frame, late);
   capture.add(50);
-  const Result result = convertPcap(capture.pcap.bytes());
+  const PcapResult result = convertPcap(capture.pcap.bytes());
   EXPECT_EQ(result.report.packets.accepted, 100);
   EXPECT_EQ(result.report.packets.rejected[static_cast<size_t>(PacketFault::kOutOfOrder)], 1);
   const auto times = packetTimes(result.log);
@@ -158,7 +158,7 @@ TEST(ConvertRecordingTest, ASecondSensorIsKeptApart) {
     other.source = 202;
     capture.pcap.addUdp(other, test::TurningSensor().next());
   }
-  const Result result = convertPcap(capture.pcap.bytes());
+  const PcapResult result = convertPcap(capture.pcap.bytes());
   EXPECT_EQ(result.report.packets.accepted, 100);
   EXPECT_EQ(result.report.packets.other_sensor, 100);
 }
@@ -168,7 +168,7 @@ TEST(ConvertRecordingTest, ATruncatedCaptureYieldsWhatIsWhole) {
   capture.add(200);
   std::vector<uint8_t> bytes = capture.pcap.bytes();
   for (const size_t cut : {1u, 700u, 1248u + 8u}) {
-    const Result result = convertPcap({bytes.begin(), bytes.end() - static_cast<std::ptrdiff_t>(cut)});
+    const PcapResult result = convertPcap({bytes.begin(), bytes.end() - static_cast<std::ptrdiff_t>(cut)});
     EXPECT_EQ(result.report.packets.accepted, 199);
     ASSERT_EQ(result.report.warnings.size(), 1u);
     EXPECT_THAT(result.report.warnings[0], HasSubstr("truncated"));
@@ -238,7 +238,7 @@ TEST(ConvertRecordingTest, OdometryIsMergedInOrderOfTime) {
   ConvertOptions options;
   options.odometry_tum = odometry;
   options.T_body_lidar = parseTransform("0.12 0 0.31 0 0 0 1", "--T-body-lidar");
-  const Result result = convertPcap(capture.pcap.bytes(), options);
+  const PcapResult result = convertPcap(capture.pcap.bytes(), options);
   EXPECT_EQ(result.report.odometry, 60);
   ASSERT_EQ(result.log.odometry.size(), 60u);
   EXPECT_EQ(result.log.odometry[3].header.utime, kHour_us + 30'000);

@@ -11,6 +11,8 @@
 
 namespace sgraphs::test {
 
+inline constexpr int64_t kLogStart_us = 1'700'000'000'000'000;  // of logs that tests write
+
 // Everything a log holds, decoded.
 struct LogContents {
   std::vector<std::string> order;  // channel of each event

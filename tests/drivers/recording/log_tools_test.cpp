@@ -15,10 +15,9 @@ namespace sgraphs {
 namespace {
 
 namespace fs = std::filesystem;
+using test::kLogStart_us;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr int64_t kStart_us = 1'700'000'000'000'000;
 
 // 4 s of odometry at 50 Hz and packets.
 fs::path makeLog() {
@@ -26,7 +25,7 @@ fs::path makeLog() {
   LogWriter log(path);
   Session session;
   session.id = 77;
-  session.start = Time{kStart_us};
+  session.start = Time{kLogStart_us};
   session.writer = "the writer";
   session.has_odometry = true;
   RecordingWriter writer(log, session);
@@ -34,11 +33,11 @@ fs::path makeLog() {
   for (int64_t t = 0; t < 4'000'000; t += 20'000) {
     for (; sensor.timeUs() < t;) {
       VelodynePacket packet;
-      packet.time = Time{kStart_us + sensor.timeUs()};
+      packet.time = Time{kLogStart_us + sensor.timeUs()};
       packet.bytes = sensor.next();
       writer.addPacket(packet);
     }
-    writer.addOdometry({Time{kStart_us + t}, SE3()});
+    writer.addOdometry({Time{kLogStart_us + t}, SE3()});
   }
   writer.finish();
   log.close();
@@ -60,9 +59,10 @@ void dropEvent(const fs::path& from, const fs::path& to, const std::string& chan
 TEST(LogSummaryTest, EveryChannelOfTheTableIsKnown) {
   const fs::path path = test::freshFolder() / "run.lcmlog";
   LogWriter log(path);
-  for (const channels::Row& row : channels::table()) log.write(kStart_us, row.name, std::vector<uint8_t>(50));
-  write(log, kStart_us, channels::kRooms, rooms_t{});
-  write(log, kStart_us, channels::kMapChunk, map_chunk_t{});
+  for (const channels::Row& row : channels::table())
+    log.write(kLogStart_us, row.name, std::vector<uint8_t>(50));
+  write(log, kLogStart_us, channels::kRooms, rooms_t{});
+  write(log, kLogStart_us, channels::kMapChunk, map_chunk_t{});
   log.close();
   const LogSummary summary = summariseLog(path);
   EXPECT_EQ(summary.channels.size(), channels::table().size());
@@ -135,18 +135,18 @@ TEST(LogLatencyTest, IsFromTheLastMessageThatWentIn) {
   const fs::path path = test::freshFolder() / "run.lcmlog";
   LogWriter log(path);
   const auto stamped = [](auto message, int64_t stamp_us) {
-    message.header.utime = kStart_us + stamp_us;
+    message.header.utime = kLogStart_us + stamp_us;
     return message;
   };
-  write(log, kStart_us - 900, channels::kOdometry,
+  write(log, kLogStart_us - 900, channels::kOdometry,
         stamped(odometry_t{}, -1000));  // of packets not in the log
   for (int64_t i = 0; i < 400; ++i) {
     const int64_t stamp_us = 20'000 * i;
-    write(log, kStart_us + stamp_us + 1000, channels::kVelodynePackets,
+    write(log, kLogStart_us + stamp_us + 1000, channels::kVelodynePackets,
           stamped(velodyne_packets_t{}, stamp_us));
     if (i % 4 != 3) continue;
     const int64_t took_us = 5'000 + 100 * (i / 4);  // 5.0 ms, 5.1 ms … 14.9 ms
-    write(log, kStart_us + stamp_us + 1000 + took_us, channels::kOdometry,
+    write(log, kLogStart_us + stamp_us + 1000 + took_us, channels::kOdometry,
           stamped(odometry_t{}, stamp_us + 500));
   }
   log.close();
@@ -177,8 +177,8 @@ TEST(LogEditTest, ACutStaysCompleteByItself) {
   EXPECT_EQ(log.order.back(), "STREAM_END");
   EXPECT_TRUE(std::is_sorted(log.stamps.begin(), log.stamps.end()));
   ASSERT_FALSE(log.odometry.empty());
-  EXPECT_GE(log.odometry.front().header.utime, kStart_us + 1'500'000);
-  EXPECT_LE(log.odometry.back().header.utime, kStart_us + 3'000'000);
+  EXPECT_GE(log.odometry.front().header.utime, kLogStart_us + 1'500'000);
+  EXPECT_LE(log.odometry.back().header.utime, kLogStart_us + 3'000'000);
   const LogSummary summary = summariseLog(output);
   for (const auto& [name, channel] : summary.channels) EXPECT_EQ(channel.gaps, 0) << name;
   ASSERT_TRUE(log.end);

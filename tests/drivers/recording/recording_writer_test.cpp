@@ -13,19 +13,19 @@
 namespace sgraphs {
 namespace {
 
-constexpr int64_t kStart_us = 1'700'000'000'000'000;
+using test::kLogStart_us;
 
 Session someSession() {
   Session session;
   session.id = 77;
-  session.start = Time{kStart_us};
+  session.start = Time{kLogStart_us};
   session.writer = "test";
   return session;
 }
 
 VelodynePacket next(test::TurningSensor& sensor) {
   VelodynePacket packet;
-  packet.time = Time{kStart_us + sensor.timeUs()};
+  packet.time = Time{kLogStart_us + sensor.timeUs()};
   packet.bytes = sensor.next();
   return packet;
 }
@@ -39,7 +39,7 @@ test::LogContents writtenLog() {
   int64_t odometry_us = 0;
   while (sensor.time_us < 2.5e6) {
     for (; odometry_us < sensor.timeUs(); odometry_us += 20'000)
-      writer.addOdometry({Time{kStart_us + odometry_us}, SE3()});
+      writer.addOdometry({Time{kLogStart_us + odometry_us}, SE3()});
     writer.addPacket(next(sensor));
   }
   writer.finish();
@@ -52,7 +52,7 @@ TEST(RecordingWriterTest, SessionComesFirstAndEverySecond) {
   EXPECT_EQ(log.order.front(), "SESSION");
   ASSERT_EQ(log.sessions.size(), 3u);
   for (size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(log.sessions[i].header.utime, kStart_us + static_cast<int64_t>(i) * 1'000'000);
+    EXPECT_EQ(log.sessions[i].header.utime, kLogStart_us + static_cast<int64_t>(i) * 1'000'000);
     EXPECT_EQ(log.sessions[i].header.session, 77);
   }
 }
@@ -60,7 +60,7 @@ TEST(RecordingWriterTest, SessionComesFirstAndEverySecond) {
 TEST(RecordingWriterTest, LogTimeNeverDecreases) {
   const auto log = writtenLog();
   EXPECT_TRUE(std::is_sorted(log.stamps.begin(), log.stamps.end()));
-  EXPECT_EQ(log.stamps.front(), kStart_us);
+  EXPECT_EQ(log.stamps.front(), kLogStart_us);
 }
 
 TEST(RecordingWriterTest, EveryPacketIsInExactlyOneMessageInOrder) {
@@ -130,7 +130,7 @@ TEST(RecordingWriterTest, ScansAreWrittenInChunks) {
   LogWriter log(path);
   RecordingWriter writer(log, someSession());
   LidarScan scan;
-  scan.end = scan.begin = Time{kStart_us + 50'000};
+  scan.end = scan.begin = Time{kLogStart_us + 50'000};
   scan.points.resize(10'000);
   scan.deskewed = true;
   writer.addScan(scan);
@@ -148,8 +148,8 @@ TEST(RecordingWriterTest, ALongGapIsNotFilledWithSessions) {
   const std::string path = test::freshFolder() / "run.lcmlog";
   LogWriter log(path);
   RecordingWriter writer(log, someSession());
-  writer.addOdometry({Time{kStart_us}, SE3()});
-  writer.addOdometry({Time{kStart_us + 86'400'000'000}, SE3()});
+  writer.addOdometry({Time{kLogStart_us}, SE3()});
+  writer.addOdometry({Time{kLogStart_us + 86'400'000'000}, SE3()});
   writer.finish();
   log.close();
   const auto contents = test::readLog(path);

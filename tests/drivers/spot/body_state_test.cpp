@@ -7,12 +7,12 @@
 namespace sgraphs {
 namespace {
 
-const SE3 kTOdomBody(so3Exp({0.2, 0.1, 1.0}), {1, 2, 0.5});
+const SE3 kTOdomWalking(so3Exp({0.2, 0.1, 1.0}), {1, 2, 0.5});
 
 RobotState walkingState() {
   RobotState state;
   state.acquired_robot = {1'000'000};
-  state.frames = {{"body", {"", {}}}, {"odom", {"body", kTOdomBody.inverse()}}};
+  state.frames = {{"body", {"", {}}}, {"odom", {"body", kTOdomWalking.inverse()}}};
   return state;
 }
 
@@ -20,10 +20,10 @@ TEST(BodyStateTest, VelocityIsTurnedIntoTheBody) {
   // Half a metre per second forward and left turn, as the body feels them, told in axes of odom.
   const Eigen::Vector3d forward_body(0.5, 0, 0), turn_body(0, 0, 0.3);
   RobotState state = walkingState();
-  state.body_velocity["odom"] = {kTOdomBody.rotation * forward_body, kTOdomBody.rotation * turn_body};
+  state.body_velocity["odom"] = {kTOdomWalking.rotation * forward_body, kTOdomWalking.rotation * turn_body};
   const BodyStateResult result = bodyStateIn(state, "odom");
   ASSERT_TRUE(result.state);
-  EXPECT_LT(se3Log(result.state->T_frame_body.inverse() * kTOdomBody).norm(), 1e-12);
+  EXPECT_LT(se3Log(result.state->T_frame_body.inverse() * kTOdomWalking).norm(), 1e-12);
   ASSERT_TRUE(result.state->twist_body);
   EXPECT_LT((result.state->twist_body->head<3>() - forward_body).norm(), 1e-12);
   EXPECT_LT((result.state->twist_body->tail<3>() - turn_body).norm(), 1e-12);

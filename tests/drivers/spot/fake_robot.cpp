@@ -35,6 +35,48 @@ constexpr size_t kRoundsToEstimate = 3;
 constexpr size_t kRoundsKept = 10;
 constexpr int kCodeOk = 1, kCodeInvalidRequest = 3;
 
+void addEdge(api::FrameTreeSnapshot& tree, const std::string& child, const std::string& parent,
+             const SE3& T) {
+  auto& edge = (*tree.mutable_child_to_parent_edge_map())[child];
+  edge.set_parent_frame_name(parent);
+  *edge.mutable_parent_tform_child() = wire::toWire(T);
+}
+
+void fillFrames(FakeFrames frames, const SE3& T_odom_body, api::FrameTreeSnapshot& tree) {
+  const SE3 T_vision_body = fakeVisionOdom() * T_odom_body;
+  const SE3 T_other({0.6, 0, 0.8, 0}, {1, -2, 3});
+  switch (frames) {
+    case FakeFrames::kBodyRoot:
+    case FakeFrames::kNoOdom:
+      addEdge(tree, "body", "", {});
+      addEdge(tree, "vision", "body", T_vision_body.inverse());
+      if (frames == FakeFrames::kBodyRoot) addEdge(tree, "odom", "body", T_odom_body.inverse());
+      return;
+    case FakeFrames::kOdomRoot:
+      addEdge(tree, "odom", "", {});
+      addEdge(tree, "body", "odom", T_odom_body);
+      addEdge(tree, "vision", "odom", fakeVisionOdom().inverse());
+      return;
+    case FakeFrames::kDeep:
+      addEdge(tree, "vision", "", {});
+      addEdge(tree, "gpe", "vision", T_other);
+      addEdge(tree, "odom", "gpe", T_other.inverse() * fakeVisionOdom());
+      addEdge(tree, "flat_body", "vision", T_other);
+      addEdge(tree, "body", "flat_body", T_other.inverse() * T_vision_body);
+      return;
+    case FakeFrames::kCircle:
+      addEdge(tree, "body", "odom", T_odom_body);
+      addEdge(tree, "odom", "body", T_odom_body.inverse());
+      addEdge(tree, "vision", "body", T_vision_body.inverse());
+      return;
+  }
+}
+
+}  // namespace
+
+// Has a name, as FakeRobot::Server has one, which is made of it.
+namespace fake_robot {
+
 // What the services share.
 struct State {
   std::mutex mutex;
@@ -184,43 +226,6 @@ class Clock : public api::TimeSyncService::Service {
   State& state_;
 };
 
-void addEdge(api::FrameTreeSnapshot& tree, const std::string& child, const std::string& parent,
-             const SE3& T) {
-  auto& edge = (*tree.mutable_child_to_parent_edge_map())[child];
-  edge.set_parent_frame_name(parent);
-  *edge.mutable_parent_tform_child() = wire::toWire(T);
-}
-
-void fillFrames(FakeFrames frames, const SE3& T_odom_body, api::FrameTreeSnapshot& tree) {
-  const SE3 T_vision_body = fakeVisionOdom() * T_odom_body;
-  const SE3 T_other({0.6, 0, 0.8, 0}, {1, -2, 3});
-  switch (frames) {
-    case FakeFrames::kBodyRoot:
-    case FakeFrames::kNoOdom:
-      addEdge(tree, "body", "", {});
-      addEdge(tree, "vision", "body", T_vision_body.inverse());
-      if (frames == FakeFrames::kBodyRoot) addEdge(tree, "odom", "body", T_odom_body.inverse());
-      return;
-    case FakeFrames::kOdomRoot:
-      addEdge(tree, "odom", "", {});
-      addEdge(tree, "body", "odom", T_odom_body);
-      addEdge(tree, "vision", "odom", fakeVisionOdom().inverse());
-      return;
-    case FakeFrames::kDeep:
-      addEdge(tree, "vision", "", {});
-      addEdge(tree, "gpe", "vision", T_other);
-      addEdge(tree, "odom", "gpe", T_other.inverse() * fakeVisionOdom());
-      addEdge(tree, "flat_body", "vision", T_other);
-      addEdge(tree, "body", "flat_body", T_other.inverse() * T_vision_body);
-      return;
-    case FakeFrames::kCircle:
-      addEdge(tree, "body", "odom", T_odom_body);
-      addEdge(tree, "odom", "body", T_odom_body.inverse());
-      addEdge(tree, "vision", "body", T_vision_body.inverse());
-      return;
-  }
-}
-
 class Legs : public api::RobotStateService::Service {
  public:
   explicit Legs(State& state) : state_(state) {}
@@ -264,18 +269,18 @@ class Legs : public api::RobotStateService::Service {
   State& state_;
 };
 
-}  // namespace
+}  // namespace fake_robot
 
 SE3 fakeVisionOdom() {
   return {so3Exp({0, 0, 0.5}), {0.3, -0.2, 0.1}};
 }
 
 struct FakeRobot::Server {
-  State state;
-  Auth auth{state};
-  Directory directory{state};
-  Clock clock{state};
-  Legs legs{state};
+  fake_robot::State state;
+  fake_robot::Auth auth{state};
+  fake_robot::Directory directory{state};
+  fake_robot::Clock clock{state};
+  fake_robot::Legs legs{state};
   FakeCertificate certificate =
       makeCertificate({kAuthAuthority, kDirectoryAuthority, kClockAuthority, kStateAuthority});
   int port = 0;

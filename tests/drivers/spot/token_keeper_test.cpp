@@ -11,10 +11,10 @@ namespace {
 
 using Action = TokenKeeper::Action;
 constexpr Duration kHour{3'600'000'000};
-constexpr int64_t kSecond = 1'000'000;
+constexpr int64_t kSecond_us = 1'000'000;
 
 Time at(int64_t seconds) {
-  return {seconds * kSecond};
+  return {seconds * kSecond_us};
 }
 
 TokenKeeper loggedIn(Time now) {

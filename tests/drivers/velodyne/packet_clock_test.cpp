@@ -6,10 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "drivers/velodyne/packet_stamps.h"
+
 namespace sgraphs {
 namespace {
 
-constexpr int64_t kHour_us = 3'600'000'000;
 constexpr int64_t kUtc_us = 472'222 * kHour_us;  // an hour's begin
 constexpr double kPeriod_us = 1327.104;
 

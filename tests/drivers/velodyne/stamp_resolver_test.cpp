@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/velodyne/packet_stamps.h"
+
 namespace sgraphs {
 namespace {
 
-constexpr int64_t kHour_us = 3'600'000'000;
 constexpr int64_t kHour = 472'222 * kHour_us;  // in November 2023
 
 uint32_t stampOf(int64_t us) {

@@ -5,8 +5,6 @@
 namespace sgraphs {
 namespace {
 
-const EvidenceConfig kConfig;
-
 // A wall along x at y = 2.05, 2.6 m high, with what is said of its outline (x, z).
 MapPlane planeOf(const std::vector<std::pair<float, float>>& outline) {
   MapPlane plane;
@@ -22,7 +20,7 @@ MapPlane planeOf(const std::vector<std::pair<float, float>>& outline) {
 TEST(WallCellsTest, WallIsTracedWhereItIsHighEnough) {
   // A counter of 3 m with a wall of 1 m beside it.
   const MapPlane plane = planeOf({{0, 0}, {4, 0}, {4, 2.4f}, {3, 2.4f}, {3, 0.9f}, {0, 0.9f}});
-  const auto trace = wallTrace(plane, 1.0, kConfig);
+  const auto trace = wallTrace(plane, 1.0, EvidenceConfig());
   ASSERT_TRUE(trace);
   ASSERT_EQ(trace->pieces.size(), 1u);
   const auto [low, high] = std::minmax(trace->pieces[0].a_map.x(), trace->pieces[0].b_map.x());
@@ -33,7 +31,7 @@ TEST(WallCellsTest, WallIsTracedWhereItIsHighEnough) {
 TEST(WallCellsTest, DoorsInTheOutlineAreLeftOut) {
   const MapPlane plane =
       planeOf({{0, 0}, {1, 0}, {1, 2.1f}, {2, 2.1f}, {2, 0}, {4, 0}, {4, 2.4f}, {0, 2.4f}});
-  const auto trace = wallTrace(plane, 1.0, kConfig);
+  const auto trace = wallTrace(plane, 1.0, EvidenceConfig());
   ASSERT_TRUE(trace);
   ASSERT_EQ(trace->pieces.size(), 2u);
   for (const WallTrace::Piece& piece : trace->pieces)
@@ -44,14 +42,14 @@ TEST(WallCellsTest, DoorsInTheOutlineAreLeftOut) {
 }
 
 TEST(WallCellsTest, ColumnsFloorsAndMergedPlanesAreNoWalls) {
-  EXPECT_FALSE(wallTrace(planeOf({{0, 0}, {0.5f, 0}, {0.5f, 2.4f}, {0, 2.4f}}), 1.0, kConfig));
+  EXPECT_FALSE(wallTrace(planeOf({{0, 0}, {0.5f, 0}, {0.5f, 2.4f}, {0, 2.4f}}), 1.0, EvidenceConfig()));
   MapPlane plane = planeOf({{0, 0}, {4, 0}, {4, 2.4f}, {0, 2.4f}});
-  EXPECT_TRUE(wallTrace(plane, 1.0, kConfig));
+  EXPECT_TRUE(wallTrace(plane, 1.0, EvidenceConfig()));
   plane.merged_into = PlaneId{3};
-  EXPECT_FALSE(wallTrace(plane, 1.0, kConfig));
+  EXPECT_FALSE(wallTrace(plane, 1.0, EvidenceConfig()));
   plane.merged_into = {};
   plane.normal_map = Eigen::Vector3d::UnitZ();
-  EXPECT_FALSE(wallTrace(plane, 1.0, kConfig));
+  EXPECT_FALSE(wallTrace(plane, 1.0, EvidenceConfig()));
 }
 
 TEST(WallCellsTest, OneCellPerColumnOfTheWallAtLeast) {

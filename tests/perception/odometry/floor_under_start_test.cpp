@@ -11,8 +11,6 @@ namespace {
 
 using namespace testing_support;
 
-const SE3 kMount = poseOf({0.12, 0, 0.31}, 0, 0, 90);
-
 // Patches, in body, of one noisy scan in a room of 12 x 10 m with desks beside the robot.
 std::vector<Surfel> standingAt(const SE3& T_building_body, uint64_t seed) {
   simulate::Scene scene = simulate::makeBoxRoom(12, 10, 2.8);

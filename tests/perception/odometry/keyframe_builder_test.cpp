@@ -12,8 +12,6 @@ namespace {
 
 using namespace testing_support;
 
-const SE3 kMount = poseOf({0.12, 0, 0.31}, 0, 0, 90);
-
 LidarScan scanOf(const std::vector<Eigen::Vector3d>& points_lidar) {
   LidarScan scan;
   scan.begin = Time{0};

@@ -15,6 +15,8 @@ namespace sgraphs::testing_support {
 
 // T_dst_src from a place and roll, pitch, yaw in degrees (turned about z, then y, then x).
 SE3 poseOf(const Eigen::Vector3d& xyz, double roll_deg, double pitch_deg, double yaw_deg);
+// T_body_lidar of a sensor that looks to the left.
+inline const SE3 kMount = poseOf({0.12, 0, 0.31}, 0, 0, 90);
 
 // Length of the translation [m] and angle [rad] of a^-1 b.
 double distance(const SE3& a, const SE3& b);

@@ -44,7 +44,7 @@ std::vector<Surfel> wall(const Eigen::Vector3d& on, const Eigen::Vector3d& norma
   return patches;
 }
 
-SurfelMap mapOf(const std::vector<Surfel>& patches) {
+SurfelMap mapInBody(const std::vector<Surfel>& patches) {
   SurfelMap map(0.5);
   for (const Surfel& s : patches) map.insert(s, SE3(), kMerge_m);
   return map;
@@ -54,7 +54,7 @@ TEST(SurfelMapTest, ThinWallSeenFromBothSidesGivesTwoFacesWithoutBias) {
   const Eigen::Vector3d n = Eigen::Vector3d::UnitX();
   std::vector<Surfel> patches = wall({2.20, 0, 0}, -n, 4000, 1);
   for (const Surfel& s : wall({2.25, 0, 0}, n, 4000, 2)) patches.push_back(s);
-  const SurfelMap map = mapOf(patches);
+  const SurfelMap map = mapInBody(patches);
   for (double y = -1.5; y <= 1.5; y += 0.25) {
     const MapCell* front = map.match({2.20, y, 0.1}, -n, kGate_m, kMinCos);
     const MapCell* back = map.match({2.25, y, 0.1}, n, kGate_m, kMinCos);
@@ -69,7 +69,7 @@ TEST(SurfelMapTest, ThinWallSeenFromBothSidesGivesTwoFacesWithoutBias) {
 
 TEST(SurfelMapTest, PlaneOnTheBorderOfCubesIsNotCutInHalves) {
   // The noise puts patches into the cubes on either side of x = 2.
-  const SurfelMap map = mapOf(wall({2.0, 0, 0}, -Eigen::Vector3d::UnitX(), 3000, 3));
+  const SurfelMap map = mapInBody(wall({2.0, 0, 0}, -Eigen::Vector3d::UnitX(), 3000, 3));
   // 4 m by 2 m in cells of half a metre, begun at random places: 8 x 4 whole ones and no second layer.
   EXPECT_EQ(map.size(), 32u);
   for (const MapCell& cell : map.cells()) EXPECT_NEAR(cell.mean.x(), 2.0, 0.002);
@@ -78,7 +78,7 @@ TEST(SurfelMapTest, PlaneOnTheBorderOfCubesIsNotCutInHalves) {
 TEST(SurfelMapTest, WallAt45DegreesIsNotSplitByItsTwoFacings) {
   const Eigen::Vector3d n(-1, -1, 0);
   const std::vector<Surfel> patches = wall({1.25, 1.25, 0}, n, 3000, 4);
-  const SurfelMap map = mapOf(patches);
+  const SurfelMap map = mapInBody(patches);
   double total = 0, one_noise = 0;
   for (const MapCell& cell : map.cells()) {
     total += cell.count;
@@ -101,7 +101,7 @@ TEST(SurfelMapTest, WallAt45DegreesIsNotSplitByItsTwoFacings) {
 TEST(SurfelMapTest, CellHoldsTheMomentsOfItsPoints) {
   std::vector<Surfel> patches;
   for (const double y : {0.10, 0.20, 0.35}) patches.push_back(patch({0.2, y, 0.25}, {1, 0, 0}));
-  const SurfelMap map = mapOf(patches);
+  const SurfelMap map = mapInBody(patches);
   ASSERT_EQ(map.size(), 1u);
   const MapCell& cell = map.cells()[0];
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -116,9 +116,9 @@ TEST(SurfelMapTest, CellHoldsTheMomentsOfItsPoints) {
 
 TEST(SurfelMapTest, OrderOfPatchesOfOneSurfaceChangesOnlyRounding) {
   std::vector<Surfel> patches = wall({2.2, 0.1, 0.1}, {-1, 0, 0}, 1000, 6, 0.004, 0.0);
-  const SurfelMap forward = mapOf(patches);
+  const SurfelMap forward = mapInBody(patches);
   std::reverse(patches.begin(), patches.end());
-  const SurfelMap backward = mapOf(patches);
+  const SurfelMap backward = mapInBody(patches);
   ASSERT_EQ(forward.size(), backward.size());
   for (const MapCell& cell : forward.cells()) {
     const MapCell* other = backward.match(cell.mean, cell.normal, kGate_m, kMinCos);
@@ -132,7 +132,7 @@ TEST(SurfelMapTest, OrderOfPatchesOfOneSurfaceChangesOnlyRounding) {
 TEST(SurfelMapTest, PruneForgetsWhatIsFarAndFindsTheRest) {
   std::vector<Surfel> patches;
   for (double x = 0.25; x < 100; x += 0.5) patches.push_back(patch({x, 0.25, 0.25}, {0, 1, 0}));
-  SurfelMap map = mapOf(patches);
+  SurfelMap map = mapInBody(patches);
   ASSERT_EQ(map.size(), patches.size());
   map.prune({50, 0, 0}, 10);
   EXPECT_EQ(map.size(), 40u);
@@ -150,7 +150,7 @@ TEST(SurfelMapTest, PruneForgetsWhatIsFarAndFindsTheRest) {
 
 TEST(SurfelMapTest, MatchKeepsItsGates) {
   const Eigen::Vector3d n(0, 0, 1);
-  const SurfelMap map = mapOf({patch({0.25, 0.25, 0.1}, n)});
+  const SurfelMap map = mapInBody({patch({0.25, 0.25, 0.1}, n)});
   EXPECT_TRUE(map.match({0.3, 0.3, 0.39}, n, 0.3, kMinCos));
   EXPECT_FALSE(map.match({0.3, 0.3, 0.41}, n, 0.3, kMinCos)) << "beyond the gate";
   EXPECT_TRUE(map.match({0.3, 0.3, 0.1}, so3Exp({0.3, 0, 0}) * n, 0.3, std::cos(0.35)));
@@ -159,7 +159,7 @@ TEST(SurfelMapTest, MatchKeepsItsGates) {
   EXPECT_FALSE(map.match({1.3, 0.3, 0.1}, n, 0.3, kMinCos)) << "another cube";
   Surfel young = patch({5.25, 0.25, 0.1}, n);
   young.count = 8;
-  EXPECT_FALSE(mapOf({young}).match(young.mean, n, 0.3, kMinCos)) << "too few points to know its plane";
+  EXPECT_FALSE(mapInBody({young}).match(young.mean, n, 0.3, kMinCos)) << "too few points to know its plane";
 }
 
 TEST(SurfelMapTest, MovesPatchesIntoTheMapsFrame) {

@@ -275,6 +275,19 @@ MapUpdate idleRound(int64_t round) {
   return update;
 }
 
+Polygon2d rectangle(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+FreeSpaceCluster clusterOf(int64_t id, const Polygon2d& border, const std::vector<BorderKind>& kinds) {
+  FreeSpaceCluster cluster;
+  cluster.id = ClusterId{id};
+  cluster.floor = FloorId{0};
+  for (size_t i = 0; i < border.size(); ++i)
+    cluster.border.push_back({border[i].cast<float>(), kinds.empty() ? BorderKind::kObstacle : kinds[i]});
+  return cluster;
+}
+
 double iou(const Polygon2d& a, const Polygon2d& b) {
   const double shared = sharedArea(a, b);
   return shared / (polygonArea(a) + polygonArea(b) - shared);

@@ -56,6 +56,10 @@ MapKeyframe keyframeAt(int64_t id, const Eigen::Vector2d& p, double z_m = 0.52);
 // A round in which nothing came and nothing moved.
 MapUpdate idleRound(int64_t round);
 
+Polygon2d rectangle(double x0, double y0, double x1, double y1);
+// A cluster with a border of the test's own making; without kinds, obstacles all around.
+FreeSpaceCluster clusterOf(int64_t id, const Polygon2d& border, const std::vector<BorderKind>& kinds = {});
+
 double iou(const Polygon2d& a, const Polygon2d& b);
 Polygon2d polygonOf(const RoomObservation& room);
 

@@ -9,10 +9,6 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-Points rectangle(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
-
 simulate::Doorway doorAt(double x, double y, double width) {
   simulate::Doorway door;
   door.xyz = {x, y, 0.0};
@@ -24,16 +20,6 @@ Rooms settled(const PlanWorld& world, RoomsConfig config = {}) {
   RoomFinder finder(config);
   finder.step(world.free_space, world.update);
   return finder.step(world.free_space, idleRound(1));
-}
-
-// A cluster with a border of its own making.
-FreeSpaceCluster clusterOf(int64_t id, const Points& border, const std::vector<BorderKind>& kinds = {}) {
-  FreeSpaceCluster cluster;
-  cluster.id = ClusterId{id};
-  cluster.floor = FloorId{0};
-  for (size_t i = 0; i < border.size(); ++i)
-    cluster.border.push_back({border[i].cast<float>(), kinds.empty() ? BorderKind::kObstacle : kinds[i]});
-  return cluster;
 }
 
 void setClusters(FreeSpace& free_space, const std::vector<FreeSpaceCluster>& clusters) {

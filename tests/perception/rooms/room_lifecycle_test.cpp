@@ -8,18 +8,6 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-Points rectangle(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
-
-FreeSpaceCluster clusterOf(int64_t id, const Points& room) {
-  FreeSpaceCluster cluster;
-  cluster.id = ClusterId{id};
-  cluster.floor = FloorId{0};
-  for (const Eigen::Vector2d& p : room) cluster.border.push_back({p.cast<float>(), BorderKind::kObstacle});
-  return cluster;
-}
-
 MapPlane mergedPlane(int64_t id, int64_t into) {
   MapPlane plane;
   plane.id = PlaneId{id};

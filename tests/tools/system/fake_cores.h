@@ -12,6 +12,9 @@
 // Small cores in place of the real ones: quick, and every input shows in their output.
 namespace sgraphs::testing {
 
+// Stages of a session.
+inline const std::vector<std::string> kWithoutLoops = {"odometry", "free-space", "rooms", "backend"};
+
 // 10 cm forward per scan; every `keyframe_every`-th scan is a keyframe of `points` points. A scan without
 // points cannot be used. The covariance holds what the step was given, so that ODOMETRY shows it.
 class FakeOdometry {

@@ -14,11 +14,11 @@ namespace {
 
 using testing::FakeBackend;
 using testing::FakeOdometry;
+using testing::kWithoutLoops;
 using testing::Recorder;
 using testing::Source;
 
 const std::vector<std::string> kStages = {"odometry", "free-space", "rooms", "loops", "backend"};
-const std::vector<std::string> kWithoutLoops = {"odometry", "free-space", "rooms", "backend"};
 
 // One vertex per keyframe whose cloud came.
 class FakeFreeSpace {

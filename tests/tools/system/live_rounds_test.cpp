@@ -14,6 +14,7 @@ namespace {
 
 using testing::FakeBackend;
 using testing::FakeOdometry;
+using testing::kWithoutLoops;
 using testing::Recorder;
 using testing::Source;
 
@@ -98,7 +99,6 @@ class BackendRun {
   int64_t free_space_answers_ = 0, rooms_answers_ = 0;
 };
 
-const std::vector<std::string> kStages = {"odometry", "free-space", "rooms", "backend"};
 const std::vector<std::string> kLiveStages = {"odometry", "free-space", "rooms", "backend", "schedule"};
 
 // A walk of 24 scans in which both stages are silent from the fourth round to the seventh; then they answer
@@ -176,7 +176,7 @@ TEST(LiveRoundsTest, WithoutTheSchedulesTheDigestIsAnother) {
   BackendRun live(RoundJoiner::Mode::kLive);
   liveWalk(live);
   BackendRun other(RoundJoiner::Mode::kWait);
-  for (const Sent& sent : upstreamOf(24, kStages)) {
+  for (const Sent& sent : upstreamOf(24, kWithoutLoops)) {
     other.play(sent);
     other.answerAll();
   }

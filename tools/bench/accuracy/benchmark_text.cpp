@@ -26,7 +26,7 @@ constexpr char kHowToRead[] =
     "not "
     "count.\n";
 
-constexpr char kBaselines[] =
+constexpr char kAboutBaselines[] =
     "**Baselines** are made of PCL 1.13 here, single-threaded, from the same logs through the same decoder, "
     "in the manner of HDL-SLAM, which\nitself was not run: returns within 0.5 to 100 m, voxels of 0.1 m, "
     "points "
@@ -109,7 +109,7 @@ std::string accuracySection(const std::vector<TableSpec>& tables, const std::vec
   text += "sgraphs " + origin.version + (origin.commit.empty() ? "" : ", commit " + origin.commit) +
           " (program " + programs(results) + "), " + origin.date + "; " + origin.machine + "; seeds " +
           seedsText(results) + "; settings: " + settings(results) + ".\n\n" + kHowToRead;
-  if (hasBaselines(tables)) text += std::string("\n") + kBaselines;
+  if (hasBaselines(tables)) text += std::string("\n") + kAboutBaselines;
   for (const TableSpec& table : tables) {
     text += "\n### " + table.title + "\n" + markdown(resultCells(table, results));
     if (const Cells printed = printedCells(table); !printed.empty())

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <sstream>
 
 #include "common/base/error.h"
+#include "common/geometry/degree.h"
 #include "tools/simulate/building/mesh_assimp.h"
 #include "tools/simulate/building/mesh_surface.h"
 
@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
-constexpr double kDegree_rad = std::numbers::pi / 180;
 constexpr double kLargestPlane_m = 200;  // of the ground planes of worlds, which have no end
 
 std::string nameOf(const XMLElement& element) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "tools/simulate/scene/fault_text.h"
+
 namespace sgraphs::simulate {
 namespace {
 
@@ -24,14 +26,14 @@ struct Stand {
   double steepness = 0;  // rise per distance walked: on stairs the next step is not in the way
 };
 
-std::string text(const Eigen::Vector2d& xy) {
+std::string placeText(const Eigen::Vector2d& xy) {
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, "(%.2f, %.2f)", xy.x(), xy.y());
   return buffer;
 }
 
-std::string item(size_t waypoint) {
-  return "path.waypoints[" + std::to_string(waypoint) + "]";
+std::string waypointItem(size_t waypoint) {
+  return item("path.waypoints", waypoint);
 }
 
 // Looks at what the body's band, from its knees to its LiDAR, meets.
@@ -114,7 +116,8 @@ std::string legNear(const WalkPath& path, const Eigen::Vector2d& xy) {
     nearest = distance;
     best = i;
   }
-  return "the path from " + item(best) + " to " + item(best + 1) + ", at " + text(xy) + ",";
+  return "the path from " + waypointItem(best) + " to " + waypointItem(best + 1) + ", at " + placeText(xy) +
+         ",";
 }
 
 // The walk without the gait's sway, every kStep_m.
@@ -171,7 +174,7 @@ std::optional<std::string> meshWalkFault(const RayCaster& mesh, const WalkPath& 
     if (std::next(here) != stands.end()) steepness = std::max(steepness, std::next(here)->steepness);
     const Stand stand{waypoint.xy, floor_z_m + waypoint.rise_m, steepness};
     if (const auto distance = band.distanceAt(stand))
-      return item(i) + " at " + text(waypoint.xy) + tooClose(*distance, path.clearance_m);
+      return waypointItem(i) + " at " + placeText(waypoint.xy) + tooClose(*distance, path.clearance_m);
   }
   for (size_t k = 0; k < stands.size(); ++k) {
     if (k > 0 && band.blocked(stands[k - 1], stands[k]))

@@ -36,6 +36,11 @@ double squaredDistance(const Eigen::Vector3d& p, const TriangleMesh& mesh) {
   return best;
 }
 
+}  // namespace
+
+// Has a name, as RayCaster::Impl has one, which is made of it.
+namespace embree {
+
 // A mesh as Embree searches it.
 class SearchTree {
  public:
@@ -98,12 +103,12 @@ struct DeviceRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };
 
-}  // namespace
+}  // namespace embree
 
 struct RayCaster::Impl {
   TriangleMesh mesh, glass;
-  std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease> device;
-  SearchTree mesh_tree, glass_tree;  // after the device: they go before it
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, embree::DeviceRelease> device;
+  embree::SearchTree mesh_tree, glass_tree;  // after the device: they go before it
 };
 
 RayCaster::RayCaster(const TriangleMesh& mesh, const TriangleMesh& glass) : impl_(std::make_unique<Impl>()) {

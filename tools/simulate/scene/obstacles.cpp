@@ -9,8 +9,8 @@
 namespace sgraphs::simulate {
 namespace {
 
-constexpr double kThreshold_m = 0.05;   // lower things are stepped over
-constexpr double kHighestStep_m = 0.3;  // to the edge of a slab that a slope leads to
+constexpr double kThreshold_m = 0.05;       // lower things are stepped over
+constexpr double kHighestSlabEdge_m = 0.3;  // over the slope that leads there
 constexpr double kLidarOverBody_m = 0.5;
 
 std::string named(const std::string& place, const std::string& name) {
@@ -84,7 +84,7 @@ void Obstacles::addFlight(const std::string& name, const Stairs& stairs, int ind
 
 bool Obstacles::inTheWay(const Solid& solid, const Foothold& at) const {
   if (solid.z_min_m > at.z_m + body_top_m_ || solid.z_max_m < at.z_m + kThreshold_m) return false;
-  if (solid.slab && solid.z_max_m < at.z_m + kHighestStep_m) return false;
+  if (solid.slab && solid.z_max_m < at.z_m + kHighestSlabEdge_m) return false;
   if (solid.flight < 0) return true;
   // A flight is no obstacle to a body that climbs it.
   const Stairs& stairs = flights_[static_cast<size_t>(solid.flight)];

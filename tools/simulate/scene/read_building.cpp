@@ -1,15 +1,14 @@
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/geometry/degree.h"
 #include "tools/simulate/scene/read_scene.h"
 
 namespace sgraphs::simulate {
 namespace {
 
-constexpr double kDegree_rad = std::numbers::pi / 180;
 constexpr double kFar_m = 10000;  // no building is larger
 
 std::pair<double, double> zRange(const PlanReader& in) {

@@ -1,17 +1,15 @@
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/geometry/degree.h"
 #include "tools/simulate/scene/read_scene.h"
 
 namespace sgraphs::simulate {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDegree_rad = std::numbers::pi / 180;
 
 std::vector<Waypoint> readWaypoints(const PlanReader& in, double floor_z_m) {
   std::vector<Waypoint> waypoints;

@@ -1,16 +1,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "common/base/error.h"
+#include "common/geometry/degree.h"
 #include "tools/simulate/scene/scene_file.h"
 
 namespace sgraphs::simulate {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegree_rad = std::numbers::pi / 180;
 
 std::vector<double> listOf(const Eigen::Ref<const Eigen::VectorXd>& v) {
   return {v.data(), v.data() + v.size()};

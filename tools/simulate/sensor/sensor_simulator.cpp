@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <thread>
 #include <utility>
 
+#include "common/geometry/degree.h"
 #include "tools/simulate/sensor/random_stream.h"
 
 namespace sgraphs::simulate {
@@ -14,7 +14,6 @@ namespace {
 
 using namespace vlp16;
 
-constexpr double kDegree_rad = std::numbers::pi / 180;
 constexpr int64_t kPacketsPerTask = 16;
 
 void put16(uint8_t* at, uint32_t value) {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "tools/simulate/building/triangle_mesh.h"
+#include "tools/simulate/building/mesh_surface.h"
 
 namespace sgraphs::simulate {
 
@@ -18,6 +18,13 @@ inline std::string writeMeshFile(const std::string& name, const std::string& tex
   std::string path = folder + "/" + name;
   std::ofstream(path) << text;
   return path;
+}
+
+inline void expectBounds(const TriangleMesh& mesh, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                         double within_m) {
+  const Eigen::AlignedBox3d bounds = boundsOf(mesh);
+  EXPECT_LT((bounds.min() - low).norm(), within_m) << bounds.min().transpose();
+  EXPECT_LT((bounds.max() - high).norm(), within_m) << bounds.max().transpose();
 }
 
 // Upright boxes as an OBJ or an ASCII STL.

@@ -41,13 +41,7 @@ std::string collada(const std::string& unit, const std::string& up, const std::s
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
-void expectBounds(const TriangleMesh& mesh, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  const Eigen::AlignedBox3d bounds = boundsOf(mesh);
-  EXPECT_LT((bounds.min() - low).norm(), 1e-5) << bounds.min().transpose();
-  EXPECT_LT((bounds.max() - high).norm(), 1e-5) << bounds.max().transpose();
-}
-
-std::string complaint(const MeshFile& file) {
+std::string importComplaint(const MeshFile& file) {
   try {
     importMesh(file);
   } catch (const Error& error) {
@@ -66,7 +60,7 @@ TEST(MeshImportTest, PlyObjAndStlComeAsTheyAreWritten) {
     EXPECT_EQ(imported.mesh.triangles.size(), 12u) << path;
     EXPECT_EQ(imported.mesh.reflectivity.size(), 12u) << path;
     EXPECT_THAT(imported.warnings, testing::IsEmpty()) << path;
-    expectBounds(imported.mesh, {0, 0, 0}, {4, 3, 2});
+    expectBounds(imported.mesh, {0, 0, 0}, {4, 3, 2}, 1e-5);
   }
 }
 
@@ -81,20 +75,20 @@ TEST(MeshImportTest, ColladaUnitsUpwardAxesAndNodesAreRespected) {
   // Corners of a tetrahedron 4 m along x, 3 m along y, 2 m up, in centimetres; nodes shift x by 0.5, z by 1.
   const auto z_up =
       writeMeshFile("z_up.dae", collada("0.01", "Z_UP", "0 0 0 400 0 0 0 300 0 0 0 200", nodes));
-  expectBounds(importMesh({z_up, 1, {}}).mesh, {0.5, 0, 1}, {4.5, 3, 3});
+  expectBounds(importMesh({z_up, 1, {}}).mesh, {0.5, 0, 1}, {4.5, 3, 3}, 1e-5);
   // The same where y points up and z to the south.
   const std::string y_nodes = R"(<node><translate>0 100 0</translate><node><translate>50 0 0</translate>
       <instance_geometry url="#g"/></node></node>)";
   const auto y_up =
       writeMeshFile("y_up.dae", collada("0.01", "Y_UP", "0 0 0 400 0 0 0 0 -300 0 200 0", y_nodes));
-  expectBounds(importMesh({y_up, 1, {}}).mesh, {0.5, 0, 1}, {4.5, 3, 3});
+  expectBounds(importMesh({y_up, 1, {}}).mesh, {0.5, 0, 1}, {4.5, 3, 3}, 1e-5);
 }
 
 TEST(MeshImportTest, ScaleComesBeforeThePose) {
   const auto path = writeMeshFile("scaled.obj", asObj(room()));
   const SE3 T(Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ())),
               {10, 0, 1});
-  expectBounds(importMesh({path, 2, T}).mesh, {10 - 6, 0, 1}, {10, 8, 5});
+  expectBounds(importMesh({path, 2, T}).mesh, {10 - 6, 0, 1}, {10, 8, 5}, 1e-5);
 }
 
 TEST(MeshImportTest, HolesAreWarnedOfInOneLineThatSaysWhere) {
@@ -117,30 +111,32 @@ TEST(MeshImportTest, TrianglesWithoutAreaAreLeftOutAndCounted) {
 }
 
 TEST(MeshImportTest, WhatIsNoBuildingIsRefusedInOneLine) {
-  EXPECT_THAT(complaint({"/nowhere/house.ply", 1, {}}), HasSubstr("'/nowhere/house.ply' is not there"));
-  EXPECT_THAT(complaint({"house.blend", 1, {}}), AllOf(HasSubstr("unknown kind"), HasSubstr(".sdf")));
-  EXPECT_THAT(complaint({writeMeshFile("broken.dae", "<COLLADA"), 1, {}}), HasSubstr("cannot be read"));
-  EXPECT_THAT(complaint({writeMeshFile("broken.ply", "ply\nnonsense"), 1, {}}), HasSubstr("broken.ply"));
-  EXPECT_THAT(complaint({writeMeshFile("empty.stl", ""), 1, {}}), HasSubstr("empty.stl"));
-  EXPECT_THAT(complaint({writeMeshFile("points.ply",
-                                       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty "
-                                       "float y\nproperty float z\nend_header\n0 0 0\n1 1 1\n"),
-                         1,
-                         {}}),
-              HasSubstr("points.ply"));
-  EXPECT_THAT(complaint({writeMeshFile("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"), 1, {}}),
+  EXPECT_THAT(importComplaint({"/nowhere/house.ply", 1, {}}), HasSubstr("'/nowhere/house.ply' is not there"));
+  EXPECT_THAT(importComplaint({"house.blend", 1, {}}), AllOf(HasSubstr("unknown kind"), HasSubstr(".sdf")));
+  EXPECT_THAT(importComplaint({writeMeshFile("broken.dae", "<COLLADA"), 1, {}}), HasSubstr("cannot be read"));
+  EXPECT_THAT(importComplaint({writeMeshFile("broken.ply", "ply\nnonsense"), 1, {}}),
+              HasSubstr("broken.ply"));
+  EXPECT_THAT(importComplaint({writeMeshFile("empty.stl", ""), 1, {}}), HasSubstr("empty.stl"));
+  EXPECT_THAT(
+      importComplaint({writeMeshFile("points.ply",
+                                     "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty "
+                                     "float y\nproperty float z\nend_header\n0 0 0\n1 1 1\n"),
+                       1,
+                       {}}),
+      HasSubstr("points.ply"));
+  EXPECT_THAT(importComplaint({writeMeshFile("nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n"), 1, {}}),
               HasSubstr("not finite"));
   EXPECT_THAT(
-      complaint(
+      importComplaint(
           {writeMeshFile("line.obj", asObj(room()).substr(0, 20) + "\nv 0 0 0\nv 1 0 0\nl 1 2\n"), 1, {}}),
       HasSubstr("line.obj"));
 }
 
 TEST(MeshImportTest, SizesInAnotherUnitNameTheScale) {
   const auto path = writeMeshFile("millimetres.obj", asObj(room()));
-  EXPECT_THAT(complaint({path, 1000, {}}), AllOf(HasSubstr("4e+03 m long"), HasSubstr("scale=0.001")));
-  EXPECT_THAT(complaint({path, 0.001, {}}), AllOf(HasSubstr("0.004 m long"), HasSubstr("scale=1000")));
-  EXPECT_THAT(complaint({path, 1, {Eigen::Quaterniond::Identity(), {4e6, 0, 0}}}),
+  EXPECT_THAT(importComplaint({path, 1000, {}}), AllOf(HasSubstr("4e+03 m long"), HasSubstr("scale=0.001")));
+  EXPECT_THAT(importComplaint({path, 0.001, {}}), AllOf(HasSubstr("0.004 m long"), HasSubstr("scale=1000")));
+  EXPECT_THAT(importComplaint({path, 1, {Eigen::Quaterniond::Identity(), {4e6, 0, 0}}}),
               HasSubstr("T_building_mesh"));
 }
 

@@ -30,13 +30,7 @@ std::string box(const std::string& size) {
   return "<box><size>" + size + "</size></box>";
 }
 
-void expectBounds(const TriangleMesh& mesh, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  const Eigen::AlignedBox3d bounds = boundsOf(mesh);
-  EXPECT_LT((bounds.min() - low).norm(), 1e-4) << bounds.min().transpose();
-  EXPECT_LT((bounds.max() - high).norm(), 1e-4) << bounds.max().transpose();
-}
-
-std::string complaint(const std::string& text) {
+std::string sdfComplaint(const std::string& text) {
   try {
     readSdf(writeMeshFile("wrong.sdf", text));
   } catch (const Error& error) {
@@ -53,30 +47,30 @@ TEST(MeshSdfTest, BoxesStandAtThePosesOfModelLinkAndShape) {
   const SdfSurfaces read = readSdf(one);
   EXPECT_EQ(read.mesh.triangles.size(), 12u);
   EXPECT_THAT(read.warnings, IsEmpty());
-  expectBounds(read.mesh, {10.9, 0, 0}, {11.1, 4, 2.5});
+  expectBounds(read.mesh, {10.9, 0, 0}, {11.1, 4, 2.5}, 1e-4);
   // Two boxes in models within models.
   const auto two = writeMeshFile(
       "two.sdf", sdf(link("0 0 0 0 0 0", shape("visual", "0 0 0.5 0 0 0", box("1 1 1"))) +
                      "<model name='inner'><pose>5 0 0 0 0 0</pose>" +
                      link("0 1 0 0 0 0", shape("visual", "0 0 0.5 0 0 0", box("1 1 1"))) + "</model>"));
   EXPECT_EQ(readSdf(two).mesh.triangles.size(), 24u);
-  expectBounds(readSdf(two).mesh, {-0.5, -0.5, 0}, {5.5, 1.5, 1});
+  expectBounds(readSdf(two).mesh, {-0.5, -0.5, 0}, {5.5, 1.5, 1}, 1e-4);
 }
 
 TEST(MeshSdfTest, RollPitchAndYawTurnAboutFixedAxes) {
   // Roll by 90 degrees lays the height along -y, yaw by 90 degrees turns that to +x.
   const auto path = writeMeshFile("turned.sdf", sdf(link("0 0 0 1.5707963 0 1.5707963",
                                                          shape("visual", "0 0 1 0 0 0", box("0.2 0.2 2")))));
-  expectBounds(readSdf(path).mesh, {0, -0.1, -0.1}, {2, 0.1, 0.1});
+  expectBounds(readSdf(path).mesh, {0, -0.1, -0.1}, {2, 0.1, 0.1}, 1e-4);
 }
 
 TEST(MeshSdfTest, WhatIsSeenComesBeforeWhatIsTouched) {
   const std::string small = shape("visual", "0 0 0 0 0 0", box("1 1 1"));
   const std::string large = shape("collision", "0 0 0 0 0 0", box("3 3 3"));
   const auto both = writeMeshFile("both.sdf", sdf(link("0 0 0 0 0 0", large + small)));
-  expectBounds(readSdf(both).mesh, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+  expectBounds(readSdf(both).mesh, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 1e-4);
   const auto touched = writeMeshFile("touched.sdf", sdf(link("0 0 0 0 0 0", large)));
-  expectBounds(readSdf(touched).mesh, {-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5});
+  expectBounds(readSdf(touched).mesh, {-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}, 1e-4);
 }
 
 TEST(MeshSdfTest, CylindersAndMeshesBesideTheFile) {
@@ -91,7 +85,7 @@ TEST(MeshSdfTest, CylindersAndMeshesBesideTheFile) {
                          "<mesh><uri>model://house/cube.obj</uri><scale>2 1 3</scale></mesh>"))));
   const SdfSurfaces read = readSdf(path);
   EXPECT_THAT(read.warnings, IsEmpty());
-  expectBounds(read.mesh, {-0.5, -0.5, 0}, {4, 0.5, 3});
+  expectBounds(read.mesh, {-0.5, -0.5, 0}, {4, 0.5, 3}, 1e-4);
   EXPECT_EQ(findOpenEdges(read.mesh).count, 0);
 }
 
@@ -101,7 +95,7 @@ TEST(MeshSdfTest, MissingMeshesAreReplacedByTheirCollisionsAndNamedOnce) {
       shape("collision", "0 0 0.4 0 0 0", box("1 1 0.8"));
   const auto path = writeMeshFile("tables.sdf", sdf(link("0 0 0 0 0 0", table) + link("5 0 0 0 0 0", table)));
   const SdfSurfaces read = readSdf(path);
-  expectBounds(read.mesh, {-0.5, -0.5, 0}, {5.5, 0.5, 0.8});
+  expectBounds(read.mesh, {-0.5, -0.5, 0}, {5.5, 0.5, 0.8}, 1e-4);
   ASSERT_EQ(read.warnings.size(), 1u);
   EXPECT_THAT(read.warnings[0], AllOf(HasSubstr("1 mesh"), HasSubstr("model://house/table.dae")));
 }
@@ -120,14 +114,14 @@ TEST(MeshSdfTest, UnknownShapesAndIncludesAreWarnedOf) {
 }
 
 TEST(MeshSdfTest, WrongElementsAreNamedWithTheirLine) {
-  EXPECT_THAT(complaint("<sdf><model>"), AllOf(HasSubstr("wrong.sdf:"), HasSubstr("not XML")));
-  EXPECT_THAT(complaint("<robot/>"), HasSubstr("no <sdf>"));
-  EXPECT_THAT(complaint(sdf(link("0 0 0 0 0", ""))), AllOf(HasSubstr(":3:"), HasSubstr("6 numbers")));
-  EXPECT_THAT(complaint(sdf(link("0 0 0 0 0 0", shape("visual", "0 0 0 0 0 0", box("1 x 1"))))),
+  EXPECT_THAT(sdfComplaint("<sdf><model>"), AllOf(HasSubstr("wrong.sdf:"), HasSubstr("not XML")));
+  EXPECT_THAT(sdfComplaint("<robot/>"), HasSubstr("no <sdf>"));
+  EXPECT_THAT(sdfComplaint(sdf(link("0 0 0 0 0", ""))), AllOf(HasSubstr(":3:"), HasSubstr("6 numbers")));
+  EXPECT_THAT(sdfComplaint(sdf(link("0 0 0 0 0 0", shape("visual", "0 0 0 0 0 0", box("1 x 1"))))),
               HasSubstr("<size> must hold 3 numbers"));
-  EXPECT_THAT(complaint(sdf(link("0 0 0 0 0 0", shape("visual", "0 0 0 0 0 0", "<box/>")))),
+  EXPECT_THAT(sdfComplaint(sdf(link("0 0 0 0 0 0", shape("visual", "0 0 0 0 0 0", "<box/>")))),
               HasSubstr("lacks <size>"));
-  EXPECT_THAT(complaint(sdf("<link name='l'><pose relative_to='door'>0 0 0 0 0 0</pose></link>")),
+  EXPECT_THAT(sdfComplaint(sdf("<link name='l'><pose relative_to='door'>0 0 0 0 0 0</pose></link>")),
               AllOf(HasSubstr("link 'l'"), HasSubstr("'door'")));
 }
 

@@ -22,7 +22,7 @@ json changed(const std::string& assignment) {
   return p;
 }
 
-std::string complaint(const std::string& assignment) {
+std::string overrideComplaint(const std::string& assignment) {
   try {
     changed(assignment);
   } catch (const UsageError& error) {
@@ -49,15 +49,15 @@ TEST(PlanOverrideTest, ObjectsOnTheWayAreMade) {
 }
 
 TEST(PlanOverrideTest, WrongPathsAreNamedInOneLine) {
-  EXPECT_THAT(complaint("walls.2.thickness=1"),
+  EXPECT_THAT(overrideComplaint("walls.2.thickness=1"),
               AllOf(HasSubstr("--set walls.2"), HasSubstr("holds 2 items")));
-  EXPECT_THAT(complaint("walls.first=1"), HasSubstr("'walls' is a list"));
-  EXPECT_THAT(complaint("walls.-1=1"), HasSubstr("'walls' is a list"));
-  EXPECT_THAT(complaint("path.speed_mps.x=1"), HasSubstr("'path.speed_mps' is a single value"));
-  EXPECT_THAT(complaint("wals.0=1"), HasSubstr("no 'wals'"));
-  EXPECT_THAT(complaint("path..speed=1"), HasSubstr("key=value"));
-  EXPECT_THAT(complaint("path.speed_mps"), HasSubstr("key=value"));
-  EXPECT_THAT(complaint("=1"), HasSubstr("key=value"));
+  EXPECT_THAT(overrideComplaint("walls.first=1"), HasSubstr("'walls' is a list"));
+  EXPECT_THAT(overrideComplaint("walls.-1=1"), HasSubstr("'walls' is a list"));
+  EXPECT_THAT(overrideComplaint("path.speed_mps.x=1"), HasSubstr("'path.speed_mps' is a single value"));
+  EXPECT_THAT(overrideComplaint("wals.0=1"), HasSubstr("no 'wals'"));
+  EXPECT_THAT(overrideComplaint("path..speed=1"), HasSubstr("key=value"));
+  EXPECT_THAT(overrideComplaint("path.speed_mps"), HasSubstr("key=value"));
+  EXPECT_THAT(overrideComplaint("=1"), HasSubstr("key=value"));
 }
 
 }  // namespace

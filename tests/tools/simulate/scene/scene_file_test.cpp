@@ -33,7 +33,7 @@ json goodPlan() {
 }
 
 // What the reader says of a plan; empty if it takes it.
-std::string complaint(const json& plan) {
+std::string planComplaint(const json& plan) {
   try {
     parseScene(plan.dump(), "plan.json");
   } catch (const Error& error) {
@@ -71,97 +71,97 @@ TEST(SceneFileTest, NumberOutOfRangeIsAnError) {
 
 TEST(SceneFileTest, EachBadItemIsNamed) {
   json plan = goodPlan();
-  EXPECT_EQ(complaint(plan), "");
+  EXPECT_EQ(planComplaint(plan), "");
   plan["walls"][2]["b"] = plan["walls"][2]["a"];
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("walls[2]"), HasSubstr("no length")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("walls[2]"), HasSubstr("no length")));
 
   plan = goodPlan();
   plan["walls"][1]["thickness"] = -0.1;
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("walls[1]"), HasSubstr("thickness"), HasSubstr("-0.1")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("walls[1]"), HasSubstr("thickness"), HasSubstr("-0.1")));
 
   plan = goodPlan();
   plan["walls"][3]["z"] = {2.5, 0};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("walls[3]"), HasSubstr("height")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("walls[3]"), HasSubstr("height")));
 
   plan = goodPlan();
   plan["walls"][0]["a"] = {1, 2, 3};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("walls[0].a"), HasSubstr("2 numbers")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("walls[0].a"), HasSubstr("2 numbers")));
 
   plan = goodPlan();
   plan["walls"][0].erase("thickness");
-  EXPECT_THAT(complaint(plan), HasSubstr("walls[0].thickness is missing"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("walls[0].thickness is missing"));
 
   plan = goodPlan();
   plan["doorways"][0]["xyz"] = {2, 2, 0};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("doorways[0]"), HasSubstr("not on a wall")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("doorways[0]"), HasSubstr("not on a wall")));
 
   plan = goodPlan();
   plan["doorways"][0]["floor"] = 1;
-  EXPECT_THAT(complaint(plan), HasSubstr("doorways[0].floor"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("doorways[0].floor"));
 
   plan = goodPlan();
   plan["boxes"] = {{{"name", "desk"}, {"center", {1, 1}}, {"size", {0, 1}}, {"z", {0, 1}}}};
-  EXPECT_THAT(complaint(plan), HasSubstr("boxes[0]"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("boxes[0]"));
 
   plan = goodPlan();
   plan["rooms"][0]["polygon"] = {{0, 0}, {1, 0}};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("rooms[0]"), HasSubstr("R1")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("rooms[0]"), HasSubstr("R1")));
 
   plan = goodPlan();
   plan["T_body_lidar"]["qxyzw"] = {0, 0, 0, 2};
-  EXPECT_THAT(complaint(plan), HasSubstr("T_body_lidar.qxyzw"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("T_body_lidar.qxyzw"));
 }
 
 TEST(SceneFileTest, EachBadPathIsNamed) {
   json plan = goodPlan();
   plan.erase("path");
-  EXPECT_THAT(complaint(plan), HasSubstr("path is missing"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("path is missing"));
 
   plan = goodPlan();
   plan["path"]["waypoints"] = json::array();
-  EXPECT_THAT(complaint(plan), HasSubstr("path.waypoints is empty"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("path.waypoints is empty"));
 
   plan = goodPlan();
   plan["path"]["waypoints"][1] = {6, 2};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("path.waypoints[1]"), HasSubstr("inside walls[1]")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("path.waypoints[1]"), HasSubstr("inside walls[1]")));
 
   plan = goodPlan();
   plan["path"]["waypoints"][1] = {5.8, 2};
-  EXPECT_THAT(complaint(plan),
+  EXPECT_THAT(planComplaint(plan),
               AllOf(HasSubstr("path.waypoints[1]"), HasSubstr("walls[1]"), HasSubstr("keep 0.3")));
 
   plan = goodPlan();
   plan["path"]["waypoints"] = {{1, 3.5}, {5, 3.5}};
-  EXPECT_THAT(complaint(plan),
+  EXPECT_THAT(planComplaint(plan),
               AllOf(HasSubstr("from path.waypoints[0] to path.waypoints[1]"), HasSubstr("walls[4]")));
 
   plan = goodPlan();
   plan["boxes"] = {{{"name", "desk"}, {"center", {4.5, 2}}, {"size", {0.4, 0.4}}, {"z", {0, 1}}}};
-  EXPECT_THAT(complaint(plan), HasSubstr("boxes[0] 'desk'"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("boxes[0] 'desk'"));
 
   plan = goodPlan();
   plan["path"]["waypoints"] = {{1, 2}, {1, 2}};
-  EXPECT_THAT(complaint(plan), HasSubstr("same as the one before"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("same as the one before"));
 
   plan = goodPlan();
   plan["path"]["waypoints"][0] = {{"xy", {1, 2}}, {"pause", 3}};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("waypoints[0]"), HasSubstr("pause_s")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("waypoints[0]"), HasSubstr("pause_s")));
 
   plan = goodPlan();
   plan["path"]["speed_mps"] = 30;
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("path.speed_mps"), HasSubstr("between")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("path.speed_mps"), HasSubstr("between")));
 }
 
 TEST(SceneFileTest, MisspeltKeysAreNamedAndForeignOnesPass) {
   json plan = goodPlan();
   plan["doorway"] = json::array();
-  EXPECT_THAT(complaint(plan), HasSubstr("did you mean 'doorways'"));
+  EXPECT_THAT(planComplaint(plan), HasSubstr("did you mean 'doorways'"));
   plan = goodPlan();
   plan["sensor"] = {{"range_sigma", 0.01}};
-  EXPECT_THAT(complaint(plan), AllOf(HasSubstr("sensor.range_sigma"), HasSubstr("range_sigma_m")));
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("sensor.range_sigma"), HasSubstr("range_sigma_m")));
   plan = goodPlan();
   plan["drawn_by_the_architect"] = 7;
-  EXPECT_EQ(complaint(plan), "");
+  EXPECT_EQ(planComplaint(plan), "");
 }
 
 TEST(SceneFileTest, WrittenPlanIsReadBack) {
@@ -238,9 +238,9 @@ TEST(SceneFileTest, EachBadMemberOfTheNewItemsIsNamed) {
   const auto with = [](const char* pointer, const json& value) {
     json plan = fullPlan();
     plan[json::json_pointer(pointer)] = value;
-    return complaint(plan);
+    return planComplaint(plan);
   };
-  EXPECT_EQ(complaint(fullPlan()), "");
+  EXPECT_EQ(planComplaint(fullPlan()), "");
   EXPECT_THAT(with("/walls/0/glass", 1), AllOf(HasSubstr("walls[0].glass"), HasSubstr("true or false")));
   EXPECT_THAT(with("/walls/0/glas", true), AllOf(HasSubstr("walls[0].glas"), HasSubstr("'glass'")));
   EXPECT_THAT(with("/windows/0/xyz", {1, 2, 0}), AllOf(HasSubstr("windows[0]"), HasSubstr("not on a wall")));

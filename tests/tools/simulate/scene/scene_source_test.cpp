@@ -31,7 +31,7 @@ std::string walk(const std::string& text = "[[1, 1], [4, 1]]") {
 }
 
 template <typename Kind = Error>
-std::string complaint(const SceneRequest& request) {
+std::string sourceComplaint(const SceneRequest& request) {
   try {
     openScene(request);
   } catch (const Kind& error) {
@@ -65,7 +65,7 @@ TEST(SceneSourceTest, GroundIsLaidWhereThereIsNone) {
 }
 
 TEST(SceneSourceTest, MeshWithoutWaypointsSaysWhatToGive) {
-  EXPECT_THAT(complaint<UsageError>({room("room.obj", true), "", {}}),
+  EXPECT_THAT(sourceComplaint<UsageError>({room("room.obj", true), "", {}}),
               AllOf(HasSubstr("--waypoints"), HasSubstr("[[x, y], …]")));
 }
 
@@ -73,15 +73,15 @@ TEST(SceneSourceTest, WalkIsAPathObjectOrAList) {
   const auto source =
       openScene({room("room.obj", true), walk(R"({"waypoints": [[1, 1]], "start_heading_deg": 90})"), {}});
   EXPECT_NEAR(source.scene.path.start_heading_rad, 1.5707963, 1e-6);
-  EXPECT_THAT(complaint({room("room.obj", true), walk("7"), {}}), HasSubstr("list of waypoints"));
-  EXPECT_THAT(complaint({room("room.obj", true), walk("[[1, 1]"), {}}), HasSubstr("not JSON: line 1"));
-  EXPECT_THAT(complaint({room("room.obj", true), "/nowhere.json", {}}), HasSubstr("'/nowhere.json'"));
+  EXPECT_THAT(sourceComplaint({room("room.obj", true), walk("7"), {}}), HasSubstr("list of waypoints"));
+  EXPECT_THAT(sourceComplaint({room("room.obj", true), walk("[[1, 1]"), {}}), HasSubstr("not JSON: line 1"));
+  EXPECT_THAT(sourceComplaint({room("room.obj", true), "/nowhere.json", {}}), HasSubstr("'/nowhere.json'"));
 }
 
 TEST(SceneSourceTest, WalkThroughTheMeshIsRefused) {
-  EXPECT_THAT(complaint({room("room.obj", true), walk("[[1, 1], [5.9, 1]]"), {}}),
+  EXPECT_THAT(sourceComplaint({room("room.obj", true), walk("[[1, 1], [5.9, 1]]"), {}}),
               AllOf(HasSubstr("walk.json"), HasSubstr("path.waypoints[1]"), HasSubstr("0.10 m")));
-  EXPECT_THAT(complaint({room("room.obj", true), walk("[[1, 1], [8, 1]]"), {}}), HasSubstr("mesh"));
+  EXPECT_THAT(sourceComplaint({room("room.obj", true), walk("[[1, 1], [8, 1]]"), {}}), HasSubstr("mesh"));
 }
 
 TEST(SceneSourceTest, PlansTakeMeshesFromBesideThem) {
@@ -91,7 +91,7 @@ TEST(SceneSourceTest, PlansTakeMeshesFromBesideThem) {
       "path": {"waypoints": [[12, 2]]}})");
   const SceneSource source = openScene({plan, "", {}});
   EXPECT_NEAR(boundsOf(source.imported).min().x(), 9.9, 1e-4);
-  EXPECT_THAT(complaint({plan, "", {"meshes.0.path=gone.obj"}}), HasSubstr("gone.obj' is not there"));
+  EXPECT_THAT(sourceComplaint({plan, "", {"meshes.0.path=gone.obj"}}), HasSubstr("gone.obj' is not there"));
 }
 
 TEST(SceneSourceTest, OverridesReachTheSceneAndTheDigest) {
@@ -104,8 +104,8 @@ TEST(SceneSourceTest, OverridesReachTheSceneAndTheDigest) {
   EXPECT_EQ(b.scene.name, a.scene.name);
   EXPECT_NE(a.digest, b.digest);
   EXPECT_EQ(a.digest, openScene(plain).digest);
-  EXPECT_THAT(complaint({"two_rooms", "", {"sensor.range_sigma=0.03"}}), HasSubstr("range_sigma_m"));
-  EXPECT_THAT(complaint<UsageError>({"two_rooms", "", {"nonsense=1"}}), HasSubstr("no 'nonsense'"));
+  EXPECT_THAT(sourceComplaint({"two_rooms", "", {"sensor.range_sigma=0.03"}}), HasSubstr("range_sigma_m"));
+  EXPECT_THAT(sourceComplaint<UsageError>({"two_rooms", "", {"nonsense=1"}}), HasSubstr("no 'nonsense'"));
 }
 
 TEST(SceneSourceTest, DigestKnowsTheMeshAndNotItsPlace) {

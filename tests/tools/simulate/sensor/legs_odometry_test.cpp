@@ -4,12 +4,11 @@
 
 #include <cmath>
 
+#include "common/geometry/degree.h"
 #include "tools/simulate/walk/walk.h"
 
 namespace sgraphs::simulate {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
 
 Trajectory longWalk() {
   WalkPath path;
@@ -70,10 +69,11 @@ TEST(LegsOdometryTest, DriftGrowsWithTheWalkWithinItsFigures) {
     }
     worst_sum += worst;
     EXPECT_LT(worst, 0.06 * length) << seed;
-    EXPECT_LT(std::sqrt(tilt_squares / static_cast<double>(odometry.size())), 0.25 * kDegree) << seed;
+    EXPECT_LT(std::sqrt(tilt_squares / static_cast<double>(odometry.size())), 0.25 * kDegree_rad) << seed;
     // The heading drifts by degrees, not by tens of degrees.
     const SE3 truth = start.inverse() * walk.poseAt(odometry.back().time);
-    EXPECT_LT(so3Log(truth.rotation.conjugate() * odometry.back().T_odom_body.rotation).norm(), 25 * kDegree);
+    EXPECT_LT(so3Log(truth.rotation.conjugate() * odometry.back().T_odom_body.rotation).norm(),
+              25 * kDegree_rad);
   }
   EXPECT_GT(worst_sum / kSeeds, 0.005 * length);
   EXPECT_LT(worst_sum / kSeeds, 0.03 * length);
@@ -86,7 +86,7 @@ TEST(LegsOdometryTest, SamplesFollowEachOtherSmoothly) {
     const SE3 seen = odometry[i - 1].T_odom_body.inverse() * odometry[i].T_odom_body;
     const SE3 truth = walk.poseAt(odometry[i - 1].time).inverse() * walk.poseAt(odometry[i].time);
     ASSERT_LT((seen.translation - truth.translation).norm(), 0.015) << i;
-    ASSERT_LT(so3Log(truth.rotation.conjugate() * seen.rotation).norm(), 0.3 * kDegree) << i;
+    ASSERT_LT(so3Log(truth.rotation.conjugate() * seen.rotation).norm(), 0.3 * kDegree_rad) << i;
   }
 }
 

@@ -4,14 +4,13 @@
 
 #include <cmath>
 
+#include "common/geometry/degree.h"
 #include "drivers/velodyne/vlp16_decoder.h"
 #include "tools/simulate/scene/scene_file.h"
 #include "tools/simulate/scene/test_worlds.h"
 
 namespace sgraphs::simulate {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
 
 SE3 mount() {
   return {so3Exp({0.02, 0.035, 1.2}), {0.12, 0.03, 0.31}};
@@ -62,7 +61,7 @@ TEST_F(SensorSimulatorTest, DecodedPointsLieOnTheMeshWithExactPoses) {
       ++count;
     }
   // Half a range step, and half a step of the reported azimuth (0.005 deg) at up to 6 m.
-  EXPECT_LT(worst, 0.001 + 6.5 * 0.005 * kDegree + 1e-4);
+  EXPECT_LT(worst, 0.001 + 6.5 * 0.005 * kDegree_rad + 1e-4);
   EXPECT_LT(std::sqrt(sum / static_cast<double>(count)), 0.0006);
   EXPECT_GT(count, 4 * 25000);
 }
@@ -161,7 +160,7 @@ TEST(SensorModelTest, GrazingReturnsAreLostAndOthersKept) {
     for (const LidarPoint& p : scan.points) {
       const Eigen::Vector3f u = p.position_lidar.normalized();
       if (std::abs(std::abs(p.position_lidar.y()) - 1.0f) > 0.002f) continue;
-      const double incidence = std::acos(std::abs(u.y())) / kDegree;
+      const double incidence = std::acos(std::abs(u.y())) / kDegree_rad;
       count += incidence > from_deg && incidence < to_deg;
     }
     return count;
@@ -221,7 +220,7 @@ TEST(GlassTest, ReturnsComeNearNormalIncidenceOnlyAndWeak) {
       if (on_pane) {
         EXPECT_LE(p.reflectivity, 5);
       }
-      const double incidence_deg = std::acos(way.normalized().x()) / kDegree;
+      const double incidence_deg = std::acos(way.normalized().x()) / kDegree_rad;
       if (incidence_deg < 3) {
         ++normal;
         normal_seen += on_pane;
@@ -269,7 +268,7 @@ TEST(GlassTest, FlatRaysAreThrownAwayAndPacketsAreReproducible) {
   for (const LidarPoint& p : simulateScan(world, T).points) {
     const Eigen::Vector3f u = p.position_lidar.normalized();
     if (p.position_lidar.y() < 0.21f) continue;
-    EXPECT_LT(std::acos(u.y()) / kDegree, 80);
+    EXPECT_LT(std::acos(u.y()) / kDegree_rad, 80);
     ++through;
   }
   EXPECT_GT(through, 1000);

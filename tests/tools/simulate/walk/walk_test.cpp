@@ -4,13 +4,12 @@
 
 #include <cmath>
 
+#include "common/geometry/degree.h"
 #include "tools/simulate/scene/test_worlds.h"
 #include "tools/simulate/walk/walk_plan.h"
 
 namespace sgraphs::simulate {
 namespace {
-
-constexpr double kDegree = 0.017453292519943295;
 
 WalkPath tour() {
   WalkPath path;
@@ -106,8 +105,8 @@ TEST(WalkTest, GaitSwaysAsStatedWhileWalkingAndFadesAtRest) {
     pitch = std::max(pitch, std::asin(-R(2, 0)));
   }
   EXPECT_NEAR(high - low, 2 * path.gait.bob_m, 2e-4);
-  EXPECT_NEAR(roll, 1.0 * kDegree, 0.02 * kDegree);
-  EXPECT_NEAR(pitch, 0.5 * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(roll, 1.0 * kDegree_rad, 0.02 * kDegree_rad);
+  EXPECT_NEAR(pitch, 0.5 * kDegree_rad, 0.02 * kDegree_rad);
   EXPECT_NEAR(walk.poseAt(walk.end()).translation.z(), path.body_height_m, 1e-12);
 }
 
