@@ -34,6 +34,9 @@ constexpr int kMaxFailures = 10;
 // Share of the legs' covariance over a keyframe that remains between its pose and its own cloud.
 constexpr double kBentByLegs = 0.05;
 
+// A map of fewer scans may itself be bent: the first one was taken as if the robot stood.
+constexpr int kSettled = 30;
+
 Matrix6d diagonalInformation(double sigma_m, double sigma_rad) {
   Vector6d d;
   d << Eigen::Vector3d::Constant(1.0 / (sigma_m * sigma_m)),
@@ -95,7 +98,8 @@ class Odometry::Impl {
     archive(map_, builder_, neighbours_, has_previous_, has_twist_, previous_pose_, legs_at_previous_end_,
             previous_end_, gap_, previous_twist_, height_m_, registered_covariance_,
             previous_registered_covariance_, keyframe_covariance_, edge_covariance_, T_odom_keyframe_,
-            all_registered_, bridged_, new_map_, failures_, next_scan_, next_keyframe_, last_keyframe_scan_);
+            all_registered_, bridged_, new_map_, failures_, registered_in_a_row_, next_scan_, next_keyframe_,
+            last_keyframe_scan_);
   }
 
  private:
@@ -189,25 +193,25 @@ class Odometry::Impl {
     return motion;
   }
 
-  // What is known of the scan's begin: it is the end of the scan before, as well as that was registered, and
-  // but for what a constant twist leaves out of a scan's motion; that is most along the vertical, where the
-  // body bobs. Where the scan before is known badly (along a corridor), begin_sigma bounds it. A begin that
-  // may move more than that lets whole scans bend: in a corridor the left wall is always seen at one time of
-  // the sweep and the right one at another, so the map agrees with any bend that it was built with.
-  Matrix6d beginInformation() const {
+  // What is known of the scan's begin: it is the end of the scan before, as well as the registration knew
+  // that end, but for what a constant twist leaves out of a scan's motion. A begin that may leave it farther
+  // lets scans bend: in a corridor the left wall is always seen at one time of the sweep and the right one at
+  // another, so that the map agrees with any bend it was built with, until the robot turns round. Along a
+  // corridor the end is hardly known; there the legs, if there are any, say the motion from it on.
+  Matrix6d beginInformation(bool has_legs) const {
     const RegistrationConfig& c = config_.registration;
     // After a silence the begin of the scan is a guess.
     const double gap_s = std::max(0.0, gap_.seconds() - 0.005);
-    Matrix6d information =
+    const Matrix6d loose =
         diagonalInformation(c.begin_sigma_m + 0.5 * gap_s, c.begin_sigma_rad + 0.5 * gap_s);
-    if (gap_s > 0 || previous_registered_covariance_.isZero()) return information;
+    if (gap_s > 0 || registered_in_a_row_ < kSettled) return loose;
     Vector6d seam;
     seam << c.seam_sigma_m, c.seam_sigma_m, c.seam_vertical_sigma_m,
         Eigen::Vector3d::Constant(c.seam_sigma_rad);
     Matrix6d covariance = previous_registered_covariance_;
     covariance.diagonal() += seam.cwiseAbs2();
-    information += covariance.inverse();
-    return information;
+    const Matrix6d weak = has_legs ? loose : diagonalInformation(c.seam_weak_sigma_m, c.begin_sigma_rad);
+    return weak + covariance.inverse();
   }
 
   void estimate(const std::vector<Surfel>& surfels, const std::optional<std::vector<SE3>>& measured,
@@ -225,11 +229,12 @@ class Odometry::Impl {
       map_ = SurfelMap(config_.registration.cell_m);
       neighbours_.forget();
       new_map_ = true;
+      registered_in_a_row_ = 0;
     }
     if (mode_ == OdometryMode::kEncoder || map_.empty()) return;
 
     MotionPrior prior;
-    prior.begin_information = beginInformation();
+    prior.begin_information = beginInformation(measured.has_value());
     if (measured) {
       for (const SE3& piece : *measured) {
         prior.relative.push_back(piece);
@@ -259,9 +264,11 @@ class Odometry::Impl {
       motion = predicted;
       e.extrapolated = true;
       ++failures_;
+      registered_in_a_row_ = 0;
       return;
     }
     failures_ = 0;
+    ++registered_in_a_row_;
     all_registered_ = trusted_before;
     registered_covariance_ = config_.covariance.scale * result.covariance;
     // Against the previous scan: both ends err.
@@ -378,6 +385,7 @@ class Odometry::Impl {
   bool bridged_ = false;        // legs measured the motion since the scan before, however long ago it was
   bool new_map_ = false;        // the local map began anew since the last keyframe
   int failures_ = 0;            // scans in a row that found no place in the map
+  int registered_in_a_row_ = 0;
   int64_t next_scan_ = 0, next_keyframe_ = 0, last_keyframe_scan_ = 0;
   std::optional<DueKeyframe> due_;
 };

@@ -50,13 +50,16 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
           "Lidar mode: how well a walking body keeps its height where no floor or ceiling is in view");
   v.field("height_memory_s", height_memory_s, 0.1, 100.0, "Time over which that height follows the body");
   v.field("begin_sigma_m", begin_sigma_m, 1e-5, 1.0,
-          "A scan begins where the one before ended: within this where that is badly known");
+          "A scan begins where the one before ended, within this as long as the map is young");
   v.field("begin_sigma_rad", begin_sigma_rad, 1e-6, 1.0, "The same, of the rotation");
   v.field("seam_sigma_m", seam_sigma_m, 1e-6, 1.0,
-          "Horizontal motion within a scan that a constant twist leaves out, at the scan's end");
+          "Later: as well as the end is known and this, of the horizontal motion that a constant twist "
+          "leaves out");
   v.field("seam_vertical_sigma_m", seam_vertical_sigma_m, 1e-6, 1.0,
           "The same along the vertical: a walking body bobs");
   v.field("seam_sigma_rad", seam_sigma_rad, 1e-6, 1.0, "The same, of the rotation");
+  v.field("seam_weak_sigma_m", seam_weak_sigma_m, 1e-5, 1.0,
+          "Lidar mode: within this in directions in which the end is hardly known");
 }
 
 void LegsConfig::visit(ConfigVisitor& v) {

@@ -45,11 +45,12 @@ struct RegistrationConfig {
   double angular_acceleration_sigma_rps2 = 1.5;
   double height_sigma_m = 0.01;
   double height_memory_s = 2.0;
-  double begin_sigma_m = 0.015;
+  double begin_sigma_m = 0.005;
   double begin_sigma_rad = 0.0008;
-  double seam_sigma_m = 0.0003;
+  double seam_sigma_m = 0.0001;
   double seam_vertical_sigma_m = 0.005;
-  double seam_sigma_rad = 0.0003;
+  double seam_sigma_rad = 0.0001;
+  double seam_weak_sigma_m = 0.015;
 
   void visit(ConfigVisitor& v);
 };
