@@ -8,7 +8,8 @@ set_property(CACHE SGRAPHS_SANITIZER PROPERTY STRINGS "" address thread)
 # tests, where Eigen is set up differently. Without CMAKE_DISABLE_PRECOMPILE_HEADERS a forgotten #include of one of
 # them goes unnoticed; tools/lint builds without.
 set(SGRAPHS_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <set> <span>
-  <sstream> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry>)
+  <sstream> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Core> <Eigen/Geometry>
+  ${PROJECT_SOURCE_DIR}/common/geometry/decompositions.h)
 set(SGRAPHS_TEST_HEADERS <gmock/gmock.h> <gtest/gtest.h>)
 
 # sgraphs_precompiled(NAME HEADERS…): a target whose precompiled headers others use.
@@ -51,32 +52,26 @@ function(sgraphs_target_defaults target)
 endfunction()
 
 # sgraphs_library(NAME SOURCES a.cpp … [DEPS public libraries] [PRIVATE_DEPS libraries kept out of the headers]
-#   [OWN_FLAGS] [NO_UNITY]). Here and below, OWN_FLAGS: a library it uses brings flags (-fPIC, -pthread) that the
-#   precompiled headers do not have; NO_UNITY: its sources share names, so that each is compiled for itself.
+#   [OWN_FLAGS]). Here and below, OWN_FLAGS: a library it uses brings flags (-fPIC, -pthread) that the
+#   precompiled headers do not have.
 function(sgraphs_library name)
-  cmake_parse_arguments(ARG "OWN_FLAGS;NO_UNITY" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_FLAGS" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   sgraphs_target_defaults(${name})
   if(NOT ARG_OWN_FLAGS)
     target_precompile_headers(${name} REUSE_FROM sgraphs_precompiled_headers)
   endif()
-  if(ARG_NO_UNITY)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-  endif()
   target_link_libraries(${name} PUBLIC ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
 endfunction()
 
-# sgraphs_executable(NAME SOURCES main.cpp … DEPS libraries [OUTPUT file name] [OWN_FLAGS] [NO_UNITY]); all programs
+# sgraphs_executable(NAME SOURCES main.cpp … DEPS libraries [OUTPUT file name] [OWN_FLAGS]); all programs
 # land in build/bin.
 function(sgraphs_executable name)
-  cmake_parse_arguments(ARG "OWN_FLAGS;NO_UNITY" "OUTPUT" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_FLAGS" "OUTPUT" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   sgraphs_target_defaults(${name})
   if(NOT ARG_OWN_FLAGS)
     target_precompile_headers(${name} REUSE_FROM sgraphs_precompiled_headers)
-  endif()
-  if(ARG_NO_UNITY)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   endif()
   target_link_libraries(${name} PRIVATE ${ARG_DEPS})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
@@ -88,10 +83,10 @@ endfunction()
 # Uninitialised Eigen values become NaN in tests, so that reading one is seen.
 set(SGRAPHS_TEST_DEFINITIONS EIGEN_INITIALIZE_MATRICES_BY_NAN)
 
-# sgraphs_test(NAME SOURCES x_test.cpp … DEPS libraries [SERIAL] [OWN_FLAGS] [NO_UNITY]): one GoogleTest program, its
+# sgraphs_test(NAME SOURCES x_test.cpp … DEPS libraries [SERIAL] [OWN_FLAGS]): one GoogleTest program, its
 # cases known to CTest; SERIAL cases run while no other test does.
 function(sgraphs_test name)
-  cmake_parse_arguments(ARG "SERIAL;OWN_FLAGS;NO_UNITY" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;OWN_FLAGS" "" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT SGRAPHS_BUILD_TESTS)
     return()
   endif()
@@ -99,9 +94,6 @@ function(sgraphs_test name)
   sgraphs_target_defaults(${name})
   if(NOT ARG_OWN_FLAGS)
     target_precompile_headers(${name} REUSE_FROM sgraphs_precompiled_test_headers)
-  endif()
-  if(ARG_NO_UNITY)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   endif()
   target_compile_definitions(${name} PRIVATE ${SGRAPHS_TEST_DEFINITIONS}
     SGRAPHS_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data"

@@ -21,8 +21,8 @@ constexpr int kTwinKeyframes = 3;
 // Planes within this of level or plumb are taken for it.
 constexpr double kUprightWithin_rad = 0.07;
 // A plane is announced again when it changed by more than this.
-constexpr double kAnnounceStep_m = 1e-3;
-constexpr double kAnnounceStep_rad = 1e-4;
+constexpr double kPlaneAnnounceStep_m = 1e-3;
+constexpr double kPlaneAnnounceStep_rad = 1e-4;
 constexpr size_t kMaxUnmapped = 500;
 // An observation is of another plane than it was taken for if it is off by this (chi-square with 3 degrees of
 // freedom): ten times what walls depart from planes and what it is known to.
@@ -30,17 +30,17 @@ constexpr double kMisfitChi2 = 100;
 // What keyframes that follow each other err by where no wall has been solved for yet.
 constexpr double kRoughly_m = 0.1, kRoughly_rad = 0.05;
 // Covariances are first-order, about states that still move a little.
-constexpr double kCovarianceMargin = 1.02;
+constexpr double kPlaneCovarianceMargin = 1.02;
 
 // Metres and radians that a solver can work with: the ranges of keyframe_admission, and no sight beyond 1 km.
 bool canBeWeighed(const PlaneObservation& z) {
-  constexpr double kFar_m = 1000, kMinVariance = 1e-14, kMaxVariance = 1e4, kMaxRatio = 1e12;
+  constexpr double kFar_m = 1000, kLeastVariance = 1e-14, kMostVariance = 1e4, kMaxRatio = 1e12;
   if (!(z.centroid_body.norm() < kFar_m) || !z.covariance.allFinite()) return false;
   for (const Eigen::Vector2f& corner : z.boundary)
     if (!(corner.norm() < kFar_m)) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(z.covariance, Eigen::EigenvaluesOnly);
   const double least = eigen.eigenvalues()(0), most = eigen.eigenvalues()(2);
-  return least > kMinVariance && most < std::min(kMaxVariance, kMaxRatio * least);
+  return least > kLeastVariance && most < std::min(kMostVariance, kMaxRatio * least);
 }
 
 PlaneNode planeFrom(const PlaneObservation& z, const SE3& T_map_body, FloorId floor) {
@@ -461,7 +461,7 @@ void PlaneLayer::mapApart(const std::vector<ObservationFactor>& astray, const As
 
 void PlaneLayer::refreshCovariances() {
   for (const auto& [id, covariance] : builder_.planeCovariances())
-    builder_.setCovariance(id, kCovarianceMargin * covariance);
+    builder_.setCovariance(id, kPlaneCovarianceMargin * covariance);
 }
 
 std::vector<PlaneId> PlaneLayer::takeChanged() {
@@ -469,8 +469,8 @@ std::vector<PlaneId> PlaneLayer::takeChanged() {
   merged_away_.clear();
   for (const auto& [id, plane] : builder_.graph().planes) {
     Announced& known = announced_[id];
-    const bool still = (known.normal - plane.normal_map).norm() < kAnnounceStep_rad &&
-                       std::abs(known.d - plane.d()) < kAnnounceStep_m &&
+    const bool still = (known.normal - plane.normal_map).norm() < kPlaneAnnounceStep_rad &&
+                       std::abs(known.d - plane.d()) < kPlaneAnnounceStep_m &&
                        known.num_observations == plane.num_observations && known.floor == plane.floor;
     if (still) continue;
     known = {plane.normal_map, plane.d(), plane.num_observations, plane.floor};

@@ -8,7 +8,7 @@ namespace sgraphs {
 namespace {
 
 constexpr size_t kMaxNeighbours = 100;
-constexpr size_t kMaxCorners = 2000;
+constexpr size_t kMaxBorderCorners = 2000;
 
 // Bytes as they are sent: a difference that a message cannot carry is none.
 template <typename Message>
@@ -49,7 +49,7 @@ std::optional<FreeSpaceVertex> fromMessage(const free_space_vertex_t& m) {
 }
 
 free_space_cluster_t toMessage(const FreeSpaceCluster& cluster) {
-  if (cluster.border.size() > kMaxCorners)
+  if (cluster.border.size() > kMaxBorderCorners)
     throw std::logic_error("cluster " + cluster.id.str() + " has more corners than a message holds");
   free_space_cluster_t m{};
   m.id = cluster.id.value;
@@ -75,7 +75,7 @@ std::optional<FreeSpaceCluster> fromMessage(const free_space_cluster_t& m) {
   cluster.max_clearance_m = m.max_clearance_m;
   cluster.center_map = Eigen::Vector2f(m.center);
   if (m.id < 0 || m.floor < -1 || !(m.area_m2 >= 0) || !(m.max_clearance_m >= 0) ||
-      !cluster.center_map.allFinite() || m.border.size() > kMaxCorners)
+      !cluster.center_map.allFinite() || m.border.size() > kMaxBorderCorners)
     return std::nullopt;
   for (size_t i = 0; i < m.border.size(); ++i) {
     const BorderCorner corner{{m.border[i][0], m.border[i][1]}, static_cast<BorderKind>(m.kind[i])};

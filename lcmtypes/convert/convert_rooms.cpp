@@ -7,11 +7,11 @@
 namespace sgraphs {
 namespace {
 
-constexpr size_t kMaxCorners = 1000;
+constexpr size_t kMaxRoomCorners = 1000;
 constexpr size_t kMaxPairs = 2;
 
 room_t toMessage(const RoomObservation& room) {
-  if (room.polygon.size() > kMaxCorners || room.pairs.size() > kMaxPairs)
+  if (room.polygon.size() > kMaxRoomCorners || room.pairs.size() > kMaxPairs)
     throw std::logic_error("room " + room.id.str() + " has more corners or pairs than a message holds");
   room_t m{};
   m.id = room.id.value;
@@ -39,8 +39,8 @@ bool isKind(int8_t kind) {
 }
 
 std::optional<RoomObservation> fromMessage(const room_t& m) {
-  if (m.id < 0 || m.floor < -1 || !isKind(m.kind) || m.polygon.size() < 3 || m.polygon.size() > kMaxCorners ||
-      m.pairs.size() > kMaxPairs || m.anchor_keyframe < -1)
+  if (m.id < 0 || m.floor < -1 || !isKind(m.kind) || m.polygon.size() < 3 ||
+      m.polygon.size() > kMaxRoomCorners || m.pairs.size() > kMaxPairs || m.anchor_keyframe < -1)
     return std::nullopt;
   RoomObservation room;
   room.id = RoomId{m.id};

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMinCos = 0.87;   // 30 degrees
 constexpr double kBelow_m = -0.2;  // the floor lies below the body's origin
-constexpr double kReach_m = 6.0;
+constexpr double kFloorReach_m = 6.0;
 constexpr double kGate_m = 0.05;
 constexpr size_t kMinPatches = 20;
 constexpr double kSigmaFloor_rad = 0.005;
@@ -19,7 +19,7 @@ constexpr double kSigmaFloor_rad = 0.005;
 std::optional<UpDirection> floorUnderStart(const std::vector<Surfel>& surfels) {
   std::vector<const Surfel*> candidates;
   for (const Surfel& s : surfels)
-    if (s.normal.z() > kMinCos && s.mean.z() < kBelow_m && s.mean.head<2>().norm() < kReach_m)
+    if (s.normal.z() > kMinCos && s.mean.z() < kBelow_m && s.mean.head<2>().norm() < kFloorReach_m)
       candidates.push_back(&s);
   if (candidates.size() < kMinPatches) return std::nullopt;
   // z = a x + b y + c, refitted to the patches within the gate; the first fit is a level plane at the median

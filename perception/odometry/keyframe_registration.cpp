@@ -3,14 +3,14 @@
 namespace sgraphs {
 namespace {
 
-constexpr size_t kNeighbours = 2;
+constexpr size_t kKeptKeyframes = 2;
 constexpr double kMinInlierShare = 0.3;
-constexpr int kMinMatches = 200;
+constexpr int kMinCloudMatches = 200;
 // What holds directions that the overlap of two keyframes does not see: almost nothing, so that such a
 // direction gets almost no weight in the graph.
 constexpr double kFree_m = 0.5;
 constexpr double kFree_rad = 0.2;
-constexpr double kMerge_m = 0.08;
+constexpr double kCloudMerge_m = 0.08;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::vector<RelativePose> KeyframeRegistration::step(KeyframeId id, const SE3& T
     SE3 T_from_to = reference.T_odom_body.inverse() * T_odom_body;
     const RegistrationResult result =
         registerRigid(surfels, reference.map, prior, registration_, threads, T_from_to);
-    if (result.matches < kMinMatches || result.inlier_share < kMinInlierShare) continue;
+    if (result.matches < kMinCloudMatches || result.inlier_share < kMinInlierShare) continue;
     RelativePose r;
     r.kind = RelativePoseKind::kNeighbour;
     r.from = reference.id;
@@ -46,9 +46,9 @@ std::vector<RelativePose> KeyframeRegistration::step(KeyframeId id, const SE3& T
     measured.push_back(r);
   }
   Reference reference{id, T_odom_body, anchor_covariance, SurfelMap(registration_.cell_m)};
-  for (const Surfel& s : surfels) reference.map.insert(s, SE3(), kMerge_m);
+  for (const Surfel& s : surfels) reference.map.insert(s, SE3(), kCloudMerge_m);
   references_.push_back(std::move(reference));
-  if (references_.size() > kNeighbours) references_.pop_front();
+  if (references_.size() > kKeptKeyframes) references_.pop_front();
   return measured;
 }
 

@@ -12,7 +12,7 @@
 namespace sgraphs::cli {
 namespace {
 
-struct Arguments {
+struct ConvertArguments {
   ConvertOptions options;
   std::string T_body_lidar;
   int64_t start_utime = 0;
@@ -74,7 +74,7 @@ void printReport(const ConvertReport& report, const ConvertOptions& options) {
   row("events written", report.events);
 }
 
-void run(Arguments& arguments) {
+void runConvertCommand(ConvertArguments& arguments) {
   ConvertOptions& options = arguments.options;
   const bool is_bag = !options.bag.empty() || !options.db3.empty();
   const int inputs = !options.pcap.empty() + !options.raw.empty() + !options.scans.empty() +
@@ -105,7 +105,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void addConvert(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ConvertArguments>();
   ConvertOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand("convert", "Turn another recording into an LCM log");
   command->add_option("--pcap", options.pcap, "VLP-16 capture (pcap or pcapng)");
@@ -135,7 +135,7 @@ void addConvert(CLI::App& app) {
       "--T-body-lidar \"0.12 0 0.31 0 0 0 1\" -o run.lcmlog\n"
       "  sgraphs convert --bag walk.bag --lidar-topic /velodyne_packets "
       "--T-body-lidar \"0.12 0 0.31 0 0 0 1\" -o run.lcmlog");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { runConvertCommand(*arguments); });
 }
 
 }  // namespace sgraphs::cli

@@ -10,7 +10,7 @@
 namespace sgraphs::cli {
 namespace {
 
-struct Arguments {
+struct DoctorArguments {
   DoctorOptions options;
   bool json = false, strict = false;
 };
@@ -27,7 +27,7 @@ std::optional<SystemConfig> configOf(const DoctorOptions& options) {
   return config;
 }
 
-void run(Arguments& arguments) {
+void runDoctorCommand(DoctorArguments& arguments) {
   DoctorOptions& options = arguments.options;
   options.lcm_url = fullLcmUrl(options.lcm_url);
   if (const std::optional<SystemConfig> config = configOf(options)) {
@@ -45,7 +45,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void addDoctor(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DoctorArguments>();
   DoctorOptions& options = arguments->options;
   CLI::App* command =
       app.add_subcommand("doctor", "What this machine lacks for a live run, and how to mend it");
@@ -64,7 +64,7 @@ void addDoctor(CLI::App& app) {
   command->add_option("--spot", options.spot_host, "Address of the robot; default: drivers.spot_bridge.host");
   command->add_option("-o,--output", options.out_dir, "Folder that results shall go to");
   command->add_option("--record", options.record_dir, "Folder that recordings shall go to");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { runDoctorCommand(*arguments); });
 }
 
 }  // namespace sgraphs::cli

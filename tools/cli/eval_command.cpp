@@ -10,12 +10,12 @@
 namespace sgraphs::cli {
 namespace {
 
-struct Options {
+struct EvalArguments {
   std::string out_dir;
   std::string truth_dir;
 };
 
-void run(const Options& options) {
+void runEvalCommand(const EvalArguments& options) {
   const Truth truth = readTruth(options.truth_dir);
   const Evaluation evaluation = evaluate(options.out_dir, truth);
   std::fputs(evaluationTable(evaluation).c_str(), stdout);
@@ -31,7 +31,7 @@ void run(const Options& options) {
 }  // namespace
 
 void addEval(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvalArguments>();
   CLI::App* command =
       app.add_subcommand("eval", "Judge a run's OUT against the truth: table, eval.json, plots");
   command->add_option("OUT", options->out_dir, "folder that 'sgraphs replay' wrote")->required();
@@ -52,7 +52,7 @@ void addEval(CLI::App& app) {
       "Rooms: IoU of 0.5 or more with the true polygon, one to one, on each floor; asked for are those that "
       "the "
       "path\nis inside of for 1 s. Floors: within 0.3 m. Doorways: within 0.5 m.");
-  command->callback([options] { run(*options); });
+  command->callback([options] { runEvalCommand(*options); });
 }
 
 }  // namespace sgraphs::cli

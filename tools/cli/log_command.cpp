@@ -10,7 +10,7 @@
 namespace sgraphs::cli {
 namespace {
 
-struct Arguments {
+struct LogArguments {
   std::string input, output;
   LogSelection selection;
   std::vector<std::string> channels;
@@ -41,13 +41,13 @@ void addLatency(CLI::App& log) {
   });
 }
 
-void copy(const Arguments& arguments) {
+void copy(const LogArguments& arguments) {
   const int64_t events = copyLog(arguments.input, arguments.output, arguments.selection);
   std::printf("%s: %lld events\n", arguments.output.c_str(), static_cast<long long>(events));
 }
 
 void addCut(CLI::App& log) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LogArguments>();
   CLI::App* command = log.add_subcommand("cut", "Copy a stretch of time");
   command->add_option("LOG", arguments->input, "LCM log")->required();
   command->add_option("--from", arguments->selection.from_s, "Begin, since the log's first event [s]");
@@ -62,7 +62,7 @@ void addCut(CLI::App& log) {
 }
 
 void addFilter(CLI::App& log) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LogArguments>();
   CLI::App* command = log.add_subcommand("filter", "Copy some channels (SESSION and STREAM_END stay)");
   command->add_option("LOG", arguments->input, "LCM log")->required();
   command->add_option("--channels", arguments->channels, "Channels to keep, A,B,…")

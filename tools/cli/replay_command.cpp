@@ -12,13 +12,13 @@
 namespace sgraphs::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string log, out_dir, config_file, map_dir, record, odometry, layers = "floors";
   std::vector<std::string> assignments;
   int threads = 0;
 };
 
-SystemConfig configOf(const Arguments& arguments) {
+SystemConfig configOf(const ReplayArguments& arguments) {
   SystemConfig config;
   if (!arguments.config_file.empty()) loadConfigFile(visitOf(config), arguments.config_file);
   for (const std::string& assignment : arguments.assignments) setConfigValue(visitOf(config), assignment);
@@ -42,7 +42,7 @@ std::function<void(const ReplayProgress&)> progressLine() {
   };
 }
 
-void report(const RunRecord& record, const std::string& out_dir) {
+void reportReplay(const RunRecord& record, const std::string& out_dir) {
   std::printf("%s: %zu scans, %zu keyframes, %.1f s of recording in %.1f s (%.1f x real time), %.0f MiB\n",
               out_dir.c_str(), record.scans.size(), record.graph->keyframes.size(), record.duration_s,
               record.wall_s, record.realtime_factor, record.peak_rss_mib);
@@ -58,13 +58,13 @@ void report(const RunRecord& record, const std::string& out_dir) {
 
 // What takes part for the layers asked for. Not left to SESSION: old logs know fewer stages than there are
 // now.
-std::vector<std::string> stagesOf(const Arguments& arguments) {
+std::vector<std::string> stagesOf(const ReplayArguments& arguments) {
   if (arguments.layers == "keyframes") return {"odometry", "loops", "backend"};
   if (arguments.layers == "walls") return {"odometry", "planes", "loops", "backend"};
   return allStages();
 }
 
-void run(const Arguments& arguments) {
+void runReplayCommand(const ReplayArguments& arguments) {
   ReplayOptions options{arguments.log,  configOf(arguments), arguments.odometry, stagesOf(arguments),
                         progressLine(), arguments.record,    arguments.map_dir,  arguments.out_dir};
   Replay replay(std::move(options));
@@ -74,7 +74,7 @@ void run(const Arguments& arguments) {
     std::fprintf(stderr, "sgraphs: warning: %s\n", warning.c_str());
   const RunRecord record = replay.record();
   writeOutputs(record, arguments.out_dir);
-  report(record, arguments.out_dir);
+  reportReplay(record, arguments.out_dir);
   if (record.reproducible) return;
   std::fprintf(stderr, "sgraphs: not reproducible: %s\n", record.why_not.c_str());
   throw ExitCode{kExitNotReproducible};
@@ -83,7 +83,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addReplay(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "A recorded log becomes a map and a trajectory");
   command->footer(
       "Examples:\n"
@@ -108,7 +108,7 @@ void addReplay(CLI::App& app) {
                       "Output folder of an earlier replay whose map is continued");
   command->add_option("--record", arguments->record,
                       "Log that everything said on the bus is written to, for lcm-spy and lcm-logplayer");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { runReplayCommand(*arguments); });
 }
 
 }  // namespace sgraphs::cli

@@ -28,7 +28,7 @@ void reportStages(const std::string& out_dir) {
                 number(timing, "p99_ms"), number(timing, "count"));
 }
 
-void report(const RunEnd& end, const RunOptions& options) {
+void reportRun(const RunEnd& end, const RunOptions& options) {
   if (!end.result) {
     const std::string why = end.backend_said.empty() ? "it said nothing" : end.backend_said;
     throw Error("the backend ended with code " + std::to_string(end.backend_code) + " and no result (" + why +
@@ -47,7 +47,7 @@ void report(const RunEnd& end, const RunOptions& options) {
   throw Error("the backend ended with code " + std::to_string(end.backend_code) + ": " + end.backend_said);
 }
 
-void run(RunOptions& options) {
+void runRunCommand(RunOptions& options) {
   if (!options.pcap.empty() && !options.log.empty()) throw UsageError("give --pcap or --log, not both");
   if (options.record_all && options.record_dir.empty()) throw UsageError("--record-all needs --record DIR");
   if (!options.config_file.empty()) loadConfigFile(visitOf(options.config), options.config_file);
@@ -58,7 +58,7 @@ void run(RunOptions& options) {
   options.lcm_url = fullLcmUrl(options.lcm_url);
   blockStopSignals();  // before LCM's thread is
   LiveRun live(options);
-  report(live.run(), options);
+  reportRun(live.run(), options);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ void addRun(CLI::App& app) {
       ->take_all();
   command->add_option("--lcm-url", options->lcm_url,
                       "LCM provider; default: $LCM_DEFAULT_URL, else LCM's own");
-  command->callback([options] { run(*options); });
+  command->callback([options] { runRunCommand(*options); });
 }
 
 }  // namespace sgraphs::cli

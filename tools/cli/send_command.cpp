@@ -25,7 +25,7 @@ constexpr uint16_t kDataPort = 2368, kPositionPort = 8308;
 constexpr uint64_t kGarbageStream = 0x67617262;  // apart from the streams of the other faults
 constexpr size_t kMostGarbageBytes = 1500;
 
-struct Arguments {
+struct SendArguments {
   std::string file, to = "127.0.0.1:2368";
   uint16_t position_port = kPositionPort;
   double rate = 1;
@@ -72,7 +72,7 @@ class RecordedDatagrams {
 // Data packets through the faults, and out.
 class FaultySensor {
  public:
-  FaultySensor(const Arguments& arguments, UdpSender& sender, uint16_t data_port, Time start)
+  FaultySensor(const SendArguments& arguments, UdpSender& sender, uint16_t data_port, Time start)
       : sender_(sender),
         data_port_(data_port),
         faults_(arguments.faults, arguments.seed, start),
@@ -123,7 +123,7 @@ std::pair<uint32_t, uint16_t> parseTarget(const std::string& to) {
   return {parseAddress(to.substr(0, colon), "--to"), static_cast<uint16_t>(port)};
 }
 
-void run(const Arguments& arguments) {
+void runSendCommand(const SendArguments& arguments) {
   const auto [address, port] = parseTarget(arguments.to);
   RecordedDatagrams datagrams(arguments.file);
   std::optional<UdpDatagram> next = datagrams.next();
@@ -157,7 +157,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void addSend(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SendArguments>();
   CLI::App* command =
       app.add_subcommand("send-packets", "Send a recorded VLP-16's packets by UDP, as the sensor would");
   command->footer(
@@ -179,7 +179,7 @@ void addSend(CLI::App& app) {
       ->check(share);
   command->add_option("--garbage", arguments->garbage, "Datagrams of noise, as a share of the packets")
       ->check(share);
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { runSendCommand(*arguments); });
 }
 
 }  // namespace sgraphs::cli

@@ -11,7 +11,7 @@
 namespace sgraphs::cli {
 namespace {
 
-void run(const simulate::SimulateOptions& options) {
+void runSimulateCommand(const simulate::SimulateOptions& options) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   simulate::Progress progress;
   if (terminal)
@@ -63,7 +63,7 @@ void addSimulate(CLI::App& app) {
   command->add_flag("--with-odometry", options->with_odometry, "Add the drifting odometry of the legs");
   command->add_option("--threads", options->num_threads, "Threads; the log does not depend on it")
       ->capture_default_str();
-  command->callback([options] { run(*options); });
+  command->callback([options] { runSimulateCommand(*options); });
 }
 
 }  // namespace sgraphs::cli

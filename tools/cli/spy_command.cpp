@@ -8,13 +8,13 @@
 namespace sgraphs::cli {
 namespace {
 
-struct Arguments {
+struct SpyArguments {
   spy::TextSpyOptions options;
   bool text = false;
   double duration_s = 0;
 };
 
-void run(Arguments& arguments, const CLI::App& command) {
+void runSpyCommand(SpyArguments& arguments, const CLI::App& command) {
   spy::TextSpyOptions& options = arguments.options;
   if (arguments.text) {
     if (command.count("--duration") > 0) options.duration_s = arguments.duration_s;
@@ -31,7 +31,7 @@ void run(Arguments& arguments, const CLI::App& command) {
 }  // namespace
 
 void addSpy(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SpyArguments>();
   spy::TextSpyOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand(
       "spy",
@@ -51,7 +51,7 @@ void addSpy(CLI::App& app) {
   command->footer(
       "Example:\n  sgraphs spy\n  sgraphs spy --text --once\n  sgraphs spy --text --channel ODOMETRY --once\n"
       "  sgraphs spy --text --lcm-url file://run.lcmlog");
-  command->callback([arguments, command] { run(*arguments, *command); });
+  command->callback([arguments, command] { runSpyCommand(*arguments, *command); });
 }
 
 }  // namespace sgraphs::cli

@@ -13,15 +13,13 @@
 namespace sgraphs {
 namespace {
 
-using Json = nlohmann::json;
-
-Eigen::Vector3d vectorOf(const Json& json) {
+Eigen::Vector3d vectorOf(const nlohmann::json& json) {
   const auto v = json.get<std::array<double, 3>>();
   return {v[0], v[1], v[2]};
 }
 
 template <int Size>
-Eigen::Matrix<double, Size, Size> covarianceOf(const Json& json) {
+Eigen::Matrix<double, Size, Size> covarianceOf(const nlohmann::json& json) {
   const auto entries = json.get<std::array<double, Size*(Size + 1) / 2>>();
   Eigen::Matrix<double, Size, Size> covariance;
   size_t next = 0;
@@ -30,7 +28,7 @@ Eigen::Matrix<double, Size, Size> covarianceOf(const Json& json) {
   return covariance;
 }
 
-EstimatedKeyframe keyframeOf(const Json& node) {
+EstimatedKeyframe keyframeOf(const nlohmann::json& node) {
   EstimatedKeyframe keyframe;
   keyframe.time = {node.at("utime").get<int64_t>()};
   const auto q = node.at("T_map_body").at("qxyzw").get<std::array<double, 4>>();
@@ -40,7 +38,7 @@ EstimatedKeyframe keyframeOf(const Json& node) {
   return keyframe;
 }
 
-EstimatedWall wallOf(const Json& node, const std::string& path) {
+EstimatedWall wallOf(const nlohmann::json& node, const std::string& path) {
   EstimatedWall wall;
   wall.id = node.at("id");
   wall.label = node.at("label");
@@ -60,12 +58,12 @@ EstimatedWall wallOf(const Json& node, const std::string& path) {
 }
 
 // Empty where the file says nothing or null.
-std::string textOf(const Json& json, const char* key) {
+std::string textOf(const nlohmann::json& json, const char* key) {
   const auto found = json.find(key);
   return found == json.end() || found->is_null() ? std::string() : found->get<std::string>();
 }
 
-EstimatedRoom roomOf(const Json& node) {
+EstimatedRoom roomOf(const nlohmann::json& node) {
   EstimatedRoom room;
   room.id = node.at("id");
   room.floor = textOf(node, "floor");
@@ -75,7 +73,7 @@ EstimatedRoom roomOf(const Json& node) {
   return room;
 }
 
-EstimatedFloor floorOf(const Json& node) {
+EstimatedFloor floorOf(const nlohmann::json& node) {
   EstimatedFloor floor;
   floor.id = node.at("id");
   if (node.contains("center"))
@@ -84,7 +82,7 @@ EstimatedFloor floorOf(const Json& node) {
   return floor;
 }
 
-EstimatedDoorway doorwayOf(const Json& link, const std::map<std::string, std::string>& floors) {
+EstimatedDoorway doorwayOf(const nlohmann::json& link, const std::map<std::string, std::string>& floors) {
   EstimatedDoorway doorway;
   doorway.source = link.at("source");
   doorway.target = link.at("target");
@@ -100,7 +98,7 @@ EstimatedDoorway doorwayOf(const Json& link, const std::map<std::string, std::st
 
 EstimatedGraph readEstimatedGraph(const std::string& graph_json_path) {
   try {
-    const auto json = Json::parse(readFile(graph_json_path));
+    const auto json = nlohmann::json::parse(readFile(graph_json_path));
     EstimatedGraph graph;
     std::map<std::string, std::string> floor_of_node;
     const int session = lastSession(json);
@@ -122,7 +120,7 @@ EstimatedGraph readEstimatedGraph(const std::string& graph_json_path) {
     for (const auto& link : json.at("links"))
       if (link.at("kind") == "doorway") graph.doorways.push_back(doorwayOf(link, floor_of_node));
     return graph;
-  } catch (const Json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw Error("cannot read graph '" + graph_json_path + "': " + error.what());
   }
 }

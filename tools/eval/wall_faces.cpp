@@ -12,7 +12,7 @@ constexpr double kExposedWithin_m = 0.01;
 constexpr double kRange_m = 20;
 constexpr double kMaxElevation_rad = 15 * M_PI / 180;  // of a VLP-16's lasers
 constexpr double kMinIncidence_rad = 5 * M_PI / 180;   // flatter rays return nothing
-constexpr double kSightMargin_m = 0.01;
+constexpr double kFaceSightMargin_m = 0.01;
 constexpr Duration kLookEvery{500'000};
 constexpr size_t kStride = 2;  // of the samples that are looked at, in both directions
 constexpr double kMinLength_m = 0.05;
@@ -54,7 +54,7 @@ bool inView(const SE3& T_truth_lidar, const TrueFace& face, const Eigen::Vector3
   if (-face.normal().dot(ray) < std::sin(kMinIncidence_rad) * range) return false;
   const Eigen::Vector3d ray_lidar = T_truth_lidar.rotation.conjugate() * ray;
   if (std::abs(ray_lidar.z()) > std::sin(kMaxElevation_rad) * range) return false;
-  return !mesh.occluded(T_truth_lidar.translation, point, kSightMargin_m);
+  return !mesh.occluded(T_truth_lidar.translation, point, kFaceSightMargin_m);
 }
 
 void look(const SE3& T_truth_lidar, double duration_s, const MeshQuery& mesh, TrueFace& face) {

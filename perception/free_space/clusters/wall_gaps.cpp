@@ -13,10 +13,10 @@
 namespace sgraphs {
 namespace {
 
-constexpr double kMinWall_m = 0.4;     // of the wall on each side of the gap
-constexpr double kMaxOffset_m = 0.25;  // between the lines of the two walls: a wall's thickness
-constexpr double kMinAlong = 0.96;     // cosine of the angle between them
-constexpr double kMinDepth_m = 1.0;    // of the space on both sides
+constexpr double kMinSideWall_m = 0.4;  // of the wall on each side of the gap
+constexpr double kMaxOffset_m = 0.25;   // between the lines of the two walls: a wall's thickness
+constexpr double kMinAlong = 0.96;      // cosine of the angle between them
+constexpr double kMinDepth_m = 1.0;     // of the space on both sides
 constexpr double kMinTurn_rad = 0.6;
 
 // Where a wall ends; `along` points on in its line.
@@ -37,9 +37,9 @@ void addEnds(const CellLoop& loop, double cell_m, std::vector<WallEnd>& ends) {
     // To the right, or back.
     if (turn_rad > -kMinTurn_rad && turn_rad < M_PI - 0.4) continue;
     const size_t here_on = here > before ? here : here + size, to = after > here ? after : after + size;
-    if (isWall(loop, before, here_on, kMinWall_m))
+    if (isWall(loop, before, here_on, kMinSideWall_m))
       ends.push_back({loop.label, loop.corners[here], lineOf(loop, before, here_on, cell_m).direction});
-    if (isWall(loop, here, to, kMinWall_m))
+    if (isWall(loop, here, to, kMinSideWall_m))
       ends.push_back({loop.label, loop.corners[here], -lineOf(loop, here, to, cell_m).direction});
   }
 }

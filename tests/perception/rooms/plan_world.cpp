@@ -14,7 +14,7 @@ namespace {
 
 using simulate::Scene;
 
-constexpr double kBody_m = 0.52;
+constexpr double kWalkerBody_m = 0.52;
 constexpr double kJoin_m = 1.2;  // gaps that a map's extents bridge
 
 struct Face {
@@ -143,9 +143,9 @@ class Builder {
   void addKeyframes() {
     int64_t id = 0;
     for (size_t floor = 0; floor < scene_.floors_z_m.size(); ++floor) {
-      const double z = scene_.floors_z_m[floor] + kBody_m;
+      const double z = scene_.floors_z_m[floor] + kWalkerBody_m;
       if (floor > 0) {
-        const double below = scene_.floors_z_m[floor - 1] + kBody_m;
+        const double below = scene_.floors_z_m[floor - 1] + kWalkerBody_m;
         for (int i = 1; i <= 8; ++i) addKeyframe(id, {-50.0 + 0.8 * i, 0.0}, below + (z - below) * i / 8);
         for (int i = 0; i < 4; ++i) addKeyframe(id, {-44.0 + 0.8 * i, 0.0}, z);
       }

@@ -29,7 +29,7 @@ EstimatedGraph graphAlong(const std::vector<StampedPose>& truth, size_t step, co
   return graph;
 }
 
-Matrix6d someCovariance() {
+Matrix6d poseCovariance() {
   Matrix6d a = Matrix6d::Identity();
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c) a(r, c) += 0.1 * ((3 * r + 5 * c) % 7);
@@ -60,7 +60,7 @@ TEST(EstimateCalibrationTest, PosesAreJudgedFromTheFirstKeyframe) {
 
 TEST(EstimateCalibrationTest, ErrorsDrawnFromTheirCovarianceAverageToTheDegreesOfFreedom) {
   const auto truth = test::curvedTruth();
-  const Matrix6d covariance = someCovariance();
+  const Matrix6d covariance = poseCovariance();
   const Matrix6d root = covariance.llt().matrixL();
   std::mt19937 random(5);
   const auto result = calibrationOfEstimates(graphAlong(truth, 2, covariance,
