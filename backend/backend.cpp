@@ -126,6 +126,9 @@ class Backend::Impl {
     output.bridged = admission.bridged;
     if (!admission.accepted) return false;
     const KeyframeId id = input.keyframe->id;
+    for (RelativePose& z : admission.relative_poses)
+      if (leavesHeightOpen(z) && z.to == id)
+        z = alongVertical(z, graph().keyframes.at(z.from).T_map_body, graph().up_map);
     addKeyframe(std::move(*input.keyframe), admission);
 
     std::optional<PlaneLayer::Sighting> sighting;

@@ -1,6 +1,7 @@
 #include "backend/output/dense_trajectory.h"
 
 #include <algorithm>
+#include <set>
 
 namespace sgraphs {
 namespace {
@@ -8,13 +9,17 @@ namespace {
 struct Correction {
   Time time;
   SE3 T_map_odom;
+  bool after_ride;  // nothing of it belongs to the poses before
 };
 
 std::vector<Correction> corrections(const SituationalGraph& graph) {
+  std::set<KeyframeId> after_ride;
+  for (const RelativePoseFactor& factor : graph.relative_poses)
+    if (leavesHeightOpen(factor.measurement)) after_ride.insert(factor.measurement.to);
   std::vector<Correction> result;
   result.reserve(graph.keyframes.size());
   for (const auto& [id, node] : graph.keyframes)
-    result.push_back({node.time, node.T_map_body * node.T_odom_body.inverse()});
+    result.push_back({node.time, node.T_map_body * node.T_odom_body.inverse(), after_ride.contains(id)});
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.time < b.time; });
   return result;
@@ -26,7 +31,7 @@ SE3 correctionAt(const std::vector<Correction>& all, Time time) {
       std::upper_bound(all.begin(), all.end(), time, [](Time t, const Correction& c) { return t < c.time; });
   if (next == all.begin()) return all.front().T_map_odom;
   const auto last = next - 1;
-  if (next == all.end() || last->time == time) return last->T_map_odom;
+  if (next == all.end() || last->time == time || next->after_ride) return last->T_map_odom;
   const double s = (time - last->time).seconds() / (next->time - last->time).seconds();
   return interpolate(last->T_map_odom, next->T_map_odom, s);
 }

@@ -112,6 +112,29 @@ std::map<FloorId, FloorNode> describeFloors(const SituationalGraph& graph, std::
   return floors;
 }
 
+std::set<FloorId> floorsOfUnknownHeight(const SituationalGraph& graph) {
+  std::set<FloorId> unknown;
+  if (graph.keyframes.empty()) return unknown;
+  // Keyframes whose heights are measured against each other, from the first one on.
+  std::map<KeyframeId, std::vector<KeyframeId>> neighbours;
+  for (const RelativePoseFactor& factor : graph.relative_poses) {
+    const RelativePose& z = factor.measurement;
+    if (leavesHeightOpen(z)) continue;
+    neighbours[z.from].push_back(z.to);
+    neighbours[z.to].push_back(z.from);
+  }
+  std::set<KeyframeId> known{graph.keyframes.begin()->first};
+  for (std::vector<KeyframeId> open{*known.begin()}; !open.empty();) {
+    const KeyframeId id = open.back();
+    open.pop_back();
+    for (const KeyframeId next : neighbours[id])
+      if (known.insert(next).second) open.push_back(next);
+  }
+  for (const auto& [id, node] : graph.keyframes) unknown.insert(floorOf(node));
+  for (const KeyframeId id : known) unknown.erase(floorOf(graph.keyframes.at(id)));
+  return unknown;
+}
+
 StoreyHeight::StoreyHeight(const SituationalGraph& graph, const FloorNode& floor) : up_(graph.up_map) {
   if (floor.has_height) {
     surface_ = up_.dot(Eigen::Vector3d(floor.center_map.x(), floor.center_map.y(), floor.z_m));

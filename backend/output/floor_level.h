@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 
 #include "backend/graph/situational_graph.h"
@@ -15,6 +16,10 @@ inline constexpr int kMaxStoreyCells = 100'000'000;
 // surface: the graph's own where it has one, else measured as the lowest dominant height of map points below
 // the path; has_height stays false where no height stands out.
 std::map<FloorId, FloorNode> describeFloors(const SituationalGraph& graph, std::span<const MapPoint> map);
+
+// Floors to which only lifts have led: no measurement says how high over the first keyframe's they lie. The
+// map has put them somewhere clear of the others.
+std::set<FloorId> floorsOfUnknownHeight(const SituationalGraph& graph);
 
 // Heights along `up_map` over the walking surface: what slices of a storey are cut by, also if the map's z is
 // not quite vertical. Without a measured surface the path's median height less a legged robot's body height

@@ -93,7 +93,8 @@ PlaneLayer::Known PlaneLayer::candidates(FloorId floor) const {
   size_t index = 0;
   const auto add = [&](const PlaneNode& plane, const Track& track) {
     const bool apart = plane.floor.valid() && floor.valid() && plane.floor != floor;
-    if (!apart) {
+    const bool ridden = track.drift(2, 2) > kOpenHeight_m * kOpenHeight_m;
+    if (!apart && !ridden) {
       known.planes.push_back({&plane, track.covariance, track.drift});
       known.index.push_back(index);
     }

@@ -22,6 +22,16 @@ struct RelativePose {
   bool registered = false;  // made from the very scans that the keyframes' planes are made from
 };
 
+// A height that is known no better than this is not measured [m].
+inline constexpr double kOpenHeight_m = 5.0;
+
+// A ride in a lift: all is known of it but the height. Bodies stand upright.
+inline bool leavesHeightOpen(const RelativePose& z) {
+  const double vertical_m2 = z.covariance(2, 2), horizontal_m2 = z.covariance(0, 0) + z.covariance(1, 1);
+  return z.kind == RelativePoseKind::kOdometry && vertical_m2 > kOpenHeight_m * kOpenHeight_m &&
+         vertical_m2 > horizontal_m2;
+}
+
 // One voxel centroid of a keyframe's aggregated cloud.
 struct KeyframePoint {
   Eigen::Vector3f position_body = Eigen::Vector3f::Zero();  // in the keyframe's body frame [m]

@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 
+#include "perception/loops/floor_return.h"
 #include "perception/loops/loop_acceptance.h"
 
 namespace sgraphs {
@@ -21,7 +22,8 @@ class LoopFinder::Impl {
         path_(config.gate),
         memory_(config.place_spacing_m, std::max(config.verification.query_path_m, config.gate.min_walked_m)),
         search_(config),
-        acceptance_(config) {}
+        acceptance_(config),
+        floor_return_(config) {}
 
   LoopClosures step(const std::optional<Keyframe>& keyframe, const MapUpdate& update) {
     LoopClosures loops;
@@ -50,26 +52,29 @@ class LoopFinder::Impl {
 
  private:
   void work(KeyframeId id, LoopClosures& loops) {
+    for (const LoopHypothesis& h : floor_return_.step(id, memory_, path_)) accept(h.loop, h.check, loops);
     // Little is learnt from loops that follow closely.
     if (path_.walkedTo(id) - looped_m_ < config_.spacing_m) return;
     const LoopAcceptance::Change change = acceptance_.step(search_.step(id, memory_, path_), path_);
-    for (size_t i = 0; i < change.accepted.size(); ++i) {
-      const MeasuredLoop& m = change.accepted[i];
-      LoopClosure loop;
-      loop.id = LoopId{next_id_++};
-      loop.pose.kind = RelativePoseKind::kLoop;
-      loop.pose.from = m.from;
-      loop.pose.to = m.to;
-      loop.pose.T_from_to = m.T_from_to;
-      loop.pose.covariance = m.covariance;
-      loop.overlap = std::clamp(change.evidence[i].check.overlap, 0.0, 1.0);
-      loop.inlier_share = std::clamp(change.evidence[i].check.inlier_share, 0.0, 1.0);
-      loops.accepted.push_back(loop);
-      ids_[{m.from, m.to}] = loop.id;
-      path_.link(m.from, m.to);
-      looped_m_ = std::max(looped_m_, path_.walkedTo(m.to));
-    }
+    for (size_t i = 0; i < change.accepted.size(); ++i)
+      accept(change.accepted[i], change.evidence[i].check, loops);
     for (const MeasuredLoop& m : change.withdrawn) withdraw(m.from, m.to, loops);
+  }
+
+  void accept(const MeasuredLoop& m, const LoopCheck& check, LoopClosures& loops) {
+    LoopClosure loop;
+    loop.id = LoopId{next_id_++};
+    loop.pose.kind = RelativePoseKind::kLoop;
+    loop.pose.from = m.from;
+    loop.pose.to = m.to;
+    loop.pose.T_from_to = m.T_from_to;
+    loop.pose.covariance = m.covariance;
+    loop.overlap = std::clamp(check.overlap, 0.0, 1.0);
+    loop.inlier_share = std::clamp(check.inlier_share, 0.0, 1.0);
+    loops.accepted.push_back(loop);
+    ids_[{m.from, m.to}] = loop.id;
+    path_.link(m.from, m.to);
+    looped_m_ = std::max(looped_m_, path_.walkedTo(m.to));
   }
 
   void withdraw(KeyframeId from, KeyframeId to, LoopClosures& loops) {
@@ -80,12 +85,14 @@ class LoopFinder::Impl {
     path_.unlink(from, to);
   }
 
-  // After a ride in a lift the storey comes to light late: what was joined by then is taken back.
+  // A climb may come to light late: what was joined by then is taken back. What joins floors across a ride in
+  // a lift has two floors at its ends until they have become one.
   void withdrawAcrossStoreys(LoopClosures& loops) {
     std::vector<std::pair<KeyframeId, KeyframeId>> across;
     for (const auto& [ends, id] : ids_) {
       const FloorId a = memory_.poseOf(ends.first).floor, b = memory_.poseOf(ends.second).floor;
-      if (a.valid() && b.valid() && a != b) across.push_back(ends);
+      const bool ridden = path_.ridesBefore(ends.first) != path_.ridesBefore(ends.second);
+      if (a.valid() && b.valid() && a != b && !ridden) across.push_back(ends);
     }
     for (const auto& [from, to] : across) {
       withdraw(from, to, loops);
@@ -103,6 +110,7 @@ class LoopFinder::Impl {
   PlaceMemory memory_;
   LoopSearch search_;
   LoopAcceptance acceptance_;
+  FloorReturn floor_return_;
   std::deque<Waiting> waiting_;
   std::map<std::pair<KeyframeId, KeyframeId>, LoopId> ids_;
   int64_t next_id_ = 0;

@@ -71,6 +71,32 @@ OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, const OldPlaces
   return OldSurroundings::ofNearest(std::move(places));
 }
 
+std::optional<LoopHypothesis> LoopSearch::straightAcross(KeyframeId keyframe, FloorId floor,
+                                                         const PlaceMemory& memory,
+                                                         const WalkedPath& path) const {
+  OldPlaces old;
+  for (const auto& [id, place] : memory.places()) {
+    if (path.ridesBefore(id) == path.ridesBefore(keyframe)) break;
+    if (memory.known(id) && memory.poseOf(id).floor == floor)
+      old.push_back({id, &place, memory.poseOf(id).T_map_body});
+  }
+  const SE3& T_map_body = memory.poseOf(keyframe).T_map_body;
+  const OldPlace* nearest = nearestFromAbove(old, T_map_body.translation.head<2>(), kAnchorReach_m);
+  if (!nearest) return std::nullopt;
+  const OldSurroundings around = surroundingsOf({nearest->id, nearest->T_map_body, {}}, old, path);
+  SE3 T_map_guess = T_map_body;
+  T_map_guess.translation.z() = nearest->T_map_body.translation.z();
+  LoopHypothesis h;
+  h.check = checkLoop(queryOf(keyframe, memory, path, config_.verification.query_path_m), around,
+                      nearest->T_map_body.inverse() * T_map_guess, config_.verification);
+  h.loop = {nearest->id, keyframe, h.check.T_anchor_body,
+            h.check.covariance + path.distortionAt(nearest->id, kDistortion_m) +
+                path.distortionAt(keyframe, kDistortion_m)};
+  const SE3 T_guess_found = T_map_guess.inverse() * nearest->T_map_body * h.check.T_anchor_body;
+  h.correction_m = T_guess_found.translation.norm();
+  return h;
+}
+
 LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const {
   LoopVerdict verdict;
   verdict.keyframe = keyframe;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "perception/loops/loop_consistency.h"
@@ -34,6 +35,11 @@ class LoopSearch {
   explicit LoopSearch(const LoopsConfig& config) : config_(config) {}
 
   LoopVerdict step(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
+
+  // What the keyframe would be on another floor, straight above or below where the map has it, at the height
+  // at which the robot walked there; nothing if it never walked there.
+  std::optional<LoopHypothesis> straightAcross(KeyframeId keyframe, FloorId floor, const PlaceMemory& memory,
+                                               const WalkedPath& path) const;
 
  private:
   // A remembered place on the keyframe's storey, walked past long enough ago.

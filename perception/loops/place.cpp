@@ -66,6 +66,7 @@ std::vector<const Place*> PlaceMemory::newestBefore(KeyframeId id, double path_m
   for (auto it = places_.upper_bound(id); it != places_.begin();) {
     --it;
     if (path.walkedTo(id) - path.walkedTo(it->first) > path_m) break;
+    if (path.ridesBefore(it->first) != path.ridesBefore(id)) break;
     out.push_back(&it->second);
   }
   return out;

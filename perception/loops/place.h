@@ -64,7 +64,7 @@ class PlaceMemory {
 
   // By id; poses in map.
   const std::map<KeyframeId, Place>& places() const { return places_; }
-  // Places along the path's last metres before `id`, that one first.
+  // Places along the path's last metres before `id`, that one first; none from before a ride.
   std::vector<const Place*> newestBefore(KeyframeId id, double path_m, const WalkedPath& path) const;
 
   size_t bytes() const;

@@ -19,14 +19,21 @@ void WalkedPath::add(const Keyframe& keyframe) {
   n.T_odom_body = keyframe.T_odom_body;
   if (!nodes_.empty()) {
     const Node& previous = nodes_.back();
-    const double step_m = (keyframe.T_odom_body.translation - previous.T_odom_body.translation).norm();
+    double step_m = (keyframe.T_odom_body.translation - previous.T_odom_body.translation).norm();
     Uncertainty& u = n.since_previous;
-    u.walked_m = step_m;
+    n.rides = previous.rides;
     bool registered = false;
     Vector6d variance = Vector6d::Zero();
     double best = std::numeric_limits<double>::infinity();
-    for (const RelativePose& r : keyframe.relative_poses) {
+    for (RelativePose r : keyframe.relative_poses) {
       if (r.from != previous.id) continue;
+      // Gates lie on one floor.
+      if (leavesHeightOpen(r)) {
+        ++n.rides;
+        r.covariance.row(2).setZero();
+        r.covariance.col(2).setZero();
+        step_m = (keyframe.T_odom_body.translation - previous.T_odom_body.translation).head<2>().norm();
+      }
       if (r.covariance.trace() < best) {
         best = r.covariance.trace();
         variance = r.covariance.diagonal();
@@ -37,6 +44,7 @@ void WalkedPath::add(const Keyframe& keyframe) {
       u.variance_rad2 = r.covariance.bottomRightCorner<3, 3>().trace();
     }
     if (!registered) n.variance = variance;
+    u.walked_m = step_m;
     u.share_m = step_m * (registered ? config_.registered_share : config_.legs_share);
     u.share_rad = step_m * (registered ? config_.registered_rad_per_m : config_.legs_rad_per_m);
     n.walked_m = previous.walked_m + step_m;

@@ -31,6 +31,8 @@ class WalkedPath {
   // Distance along the path [m] at which the keyframe stands, and its pose by odometry.
   double walkedTo(KeyframeId id) const { return node(id).walked_m; }
   const SE3& odometryOf(KeyframeId id) const { return node(id).T_odom_body; }
+  // Number of rides in lifts before the keyframe: of measurements of a pose that leave the height open.
+  int ridesBefore(KeyframeId id) const { return node(id).rides; }
 
   // Gates between `id` and all keyframes, by the shortest ways over the path and its loops.
   class Gates {
@@ -65,6 +67,7 @@ class WalkedPath {
   struct Node {
     KeyframeId id;
     double walked_m = 0;
+    int rides = 0;
     SE3 T_odom_body;
     Uncertainty since_previous;
     Vector6d variance =

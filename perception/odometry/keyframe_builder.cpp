@@ -118,11 +118,15 @@ Keyframe KeyframeBuilder::build(const SE3& T_odom_body, std::vector<Surfel>& sur
     s.covariance = R * s.covariance * R.transpose();
     surfels.push_back(s);
   }
+  drop();
+  return keyframe;
+}
+
+void KeyframeBuilder::drop() {
   T_odom_scan_.clear();
   voxels_.clear();
   index_.clear();
   surfels_odom_.clear();
-  return keyframe;
 }
 
 }  // namespace sgraphs

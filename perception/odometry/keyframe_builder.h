@@ -26,6 +26,9 @@ class KeyframeBuilder {
   // one. The patches of the same scans, in the keyframe's body, go to `surfels`.
   Keyframe build(const SE3& T_odom_body, std::vector<Surfel>& surfels);
 
+  // Leaves what has been added since the last keyframe out of the next.
+  void drop();
+
   // All but the configuration; see StateArchive.
   void visitState(auto& archive) {
     archive(has_keyframe_, T_odom_keyframe_, T_odom_scan_, voxels_, index_, surfels_odom_);

@@ -11,6 +11,7 @@
 #include "perception/odometry/keyframe_builder.h"
 #include "perception/odometry/keyframe_registration.h"
 #include "perception/odometry/legs_motion.h"
+#include "perception/odometry/lift_watch.h"
 #include "perception/odometry/registration.h"
 
 namespace sgraphs {
@@ -76,6 +77,7 @@ class Odometry::Impl {
         map_(config.registration.cell_m),
         builder_(config.keyframes, T_body_lidar),
         neighbours_(config.registration, config.covariance),
+        lifts_(config.lifts),
         arena_(config.threads) {}
 
   std::optional<OdometryEstimate> step(const LidarScan& scan, std::span<const BodyOdometry> legs) {
@@ -95,11 +97,11 @@ class Odometry::Impl {
 
   void visitState(StateArchive& archive) {
     if (due_) throw std::logic_error("the state of an odometry whose keyframe was not taken");
-    archive(map_, builder_, neighbours_, has_previous_, has_twist_, previous_pose_, legs_at_previous_end_,
-            previous_end_, gap_, previous_twist_, height_m_, registered_covariance_,
+    archive(map_, builder_, neighbours_, lifts_, has_previous_, has_twist_, previous_pose_,
+            legs_at_previous_end_, previous_end_, gap_, previous_twist_, height_m_, registered_covariance_,
             previous_registered_covariance_, keyframe_covariance_, edge_covariance_, T_odom_keyframe_,
-            all_registered_, bridged_, new_map_, failures_, registered_in_a_row_, next_scan_, next_keyframe_,
-            last_keyframe_scan_);
+            all_registered_, bridged_, new_map_, failures_, registered_in_a_row_, rides_, next_scan_,
+            next_keyframe_, last_keyframe_scan_);
   }
 
  private:
@@ -122,6 +124,9 @@ class Odometry::Impl {
     if (mode_ != OdometryMode::kLidar) measured = measuredMotion(legs, begin, scan.end);
 
     OdometryEstimate e;
+    const LiftWatch::Event ride =
+        has_previous_ ? lifts_.step(scan, kept, T_body_lidar_, previous_pose_) : LiftWatch::Event::kNone;
+    if (ride == LiftWatch::Event::kLetOut) goToAnotherFloor();
     ScanMotion motion = predict(begin, scan.end, legs, measured);
     estimate(surfels, measured, motion, e);
     remember(surfels, motion, e);
@@ -134,11 +139,36 @@ class Odometry::Impl {
     e.twist_body = previous_twist_;
     const bool lost_overlap = e.inlier_share >= 0 && e.inlier_share < config_.keyframes.min_inlier_share &&
                               e.scan - last_keyframe_scan_ >= 5;
-    e.is_keyframe = builder_.due(e.T_odom_body) || lost_overlap;
+    // What is seen before the ride does not go into the first keyframe after it.
+    e.is_keyframe = builder_.due(e.T_odom_body) || lost_overlap || ride == LiftWatch::Event::kShutIn;
     if (e.is_keyframe) ++next_keyframe_;
     e.keyframe = KeyframeId{next_keyframe_ - 1};
     if (e.is_keyframe) due_ = DueKeyframe{e, upAt(e, surfels)};
     return e;
+  }
+
+  // After a ride in a lift the robot stands where it stood, on a floor whose height nothing tells: it is put
+  // far from all that is known.
+  void goToAnotherFloor() {
+    const double rise_m = config_.lifts.storey_offset_m;
+    previous_pose_.translation.z() += rise_m;
+    height_m_ += rise_m;
+    beginMapAnew();
+    builder_.drop();
+    const Eigen::Vector3d up = previous_pose_.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double aside_m = config_.lifts.vertical_sigma_rad * rise_m;
+    // Should a loop bring the robot back, the rides share what is left over: unequally, or the floor between
+    // would come to lie on the one where both began.
+    const double sigma_m = rise_m * std::pow(3, rides_++ % 5);
+    edge_covariance_.block<3, 3>(0, 0) += sigma_m * sigma_m * up * up.transpose();
+    edge_covariance_.diagonal().head<3>().array() += aside_m * aside_m;
+  }
+
+  void beginMapAnew() {
+    map_ = SurfelMap(config_.registration.cell_m);
+    neighbours_.forget();
+    new_map_ = true;
+    registered_in_a_row_ = 0;
   }
 
   // The motion of a scan without firing times begins where the scan before ended.
@@ -226,10 +256,7 @@ class Odometry::Impl {
     if (has_previous_ && gap_ >= kLostGap && !bridged_) {
       e.covariance = unseenMotion(gap_);
       e.extrapolated = true;
-      map_ = SurfelMap(config_.registration.cell_m);
-      neighbours_.forget();
-      new_map_ = true;
-      registered_in_a_row_ = 0;
+      beginMapAnew();
     }
     if (mode_ == OdometryMode::kEncoder || map_.empty()) return;
 
@@ -367,6 +394,7 @@ class Odometry::Impl {
   SurfelMap map_;
   KeyframeBuilder builder_;
   KeyframeRegistration neighbours_;
+  LiftWatch lifts_;
   tbb::task_arena arena_;
 
   bool has_previous_ = false, has_twist_ = false;
@@ -386,6 +414,7 @@ class Odometry::Impl {
   bool new_map_ = false;        // the local map began anew since the last keyframe
   int failures_ = 0;            // scans in a row that found no place in the map
   int registered_in_a_row_ = 0;
+  int64_t rides_ = 0;
   int64_t next_scan_ = 0, next_keyframe_ = 0, last_keyframe_scan_ = 0;
   std::optional<DueKeyframe> due_;
 };

@@ -94,6 +94,16 @@ void CovarianceConfig::visit(ConfigVisitor& v) {
           "Factor on it where the odometry is a registration of the same points (lidar, fused)");
 }
 
+void LiftConfig::visit(ConfigVisitor& v) {
+  v.field("enabled", enabled, "Whether rides in lifts are looked for");
+  v.field("car_reach_m", car_reach_m, 0.5, 20.0, "A closed space that is seen no farther than this is a car");
+  v.field("car_area_m2", car_area_m2, 0.5, 100.0, "Area of a car, seen from above, at most");
+  v.field("closed_s", closed_s, 1.0, 60.0, "A ride keeps the door closed for this long at least");
+  v.field("storey_offset_m", storey_offset_m, 10.0, 1000.0,
+          "Height of a ride, which nothing measures: what is mapped after it lies clear of what is known");
+  v.field("vertical_sigma_rad", vertical_sigma_rad, 1e-4, 0.1, "How well the direction of a ride is known");
+}
+
 void OdometryConfig::visit(ConfigVisitor& v) {
   v.field("threads", threads, 1, 64, "Worker threads; the result does not depend on it");
   v.section("prefilter", prefilter, "Which returns are used");
@@ -103,6 +113,7 @@ void OdometryConfig::visit(ConfigVisitor& v) {
   v.section("clock", clock, "Clock of the legs against the LiDAR's");
   v.section("keyframes", keyframes, "When a scan becomes a keyframe");
   v.section("covariance", covariance, "Calibration of covariances");
+  v.section("lifts", lifts, "Rides in lifts");
 }
 
 }  // namespace sgraphs

@@ -89,6 +89,18 @@ struct CovarianceConfig {
   void visit(ConfigVisitor& v);
 };
 
+// When a standing robot is taken to ride in a lift, and where its map goes on.
+struct LiftConfig {
+  bool enabled = true;
+  double car_reach_m = 3.0;
+  double car_area_m2 = 9.0;
+  double closed_s = 3.0;
+  double storey_offset_m = 20.0;
+  double vertical_sigma_rad = 0.005;
+
+  void visit(ConfigVisitor& v);
+};
+
 // Members are listed once, in visit(); see config_io.h.
 struct OdometryConfig {
   int threads = 2;
@@ -99,6 +111,7 @@ struct OdometryConfig {
   ClockOffsetConfig clock;
   KeyframeConfig keyframes;
   CovarianceConfig covariance;
+  LiftConfig lifts;
 
   void visit(ConfigVisitor& v);
 };

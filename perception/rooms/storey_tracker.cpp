@@ -18,6 +18,7 @@ constexpr double kRampArrival_m = 6.0;
 // Storeys lie further apart; lower levels are landings and platforms, until the robot walks about on them.
 constexpr double kStorey_m = 1.8;
 constexpr double kPlatform_m = 5.0;
+constexpr double kOneStorey_m = 0.5;  // apart: what was taken for two storeys is one
 // Nobody climbs as much from one keyframe to the next; and no slope is fitted across.
 constexpr double kCarried_m = 1.0;
 constexpr double kCarriedPath_m = 100.0;
@@ -32,6 +33,7 @@ std::vector<KeyframeFloor> StoreyTracker::step(const std::map<KeyframeId, MapKey
   }
   const KeyframeId last = steps_.empty() ? KeyframeId{} : steps_.back().id;
   measureHeights(keyframes);
+  uniteStoreys();
   for (auto it = keyframes.upper_bound(last); it != keyframes.end(); ++it) {
     double path_m = 0;
     if (!steps_.empty()) {
@@ -90,6 +92,23 @@ void StoreyTracker::onCarried() {
   arrival_m_ = kArrival_m;
   if (!climbing_) current_ = floor;
   assign(steps_.back().id, climbing_ ? FloorId{} : floor);
+}
+
+// A lift has brought the robot back, and loops have told so.
+void StoreyTracker::uniteStoreys() {
+  for (auto newer = heights_.begin(); newer != heights_.end();) {
+    const auto older = std::find_if(heights_.begin(), newer, [&](const auto& other) {
+      return std::abs(other.second - newer->second) < kOneStorey_m;
+    });
+    if (older == newer) {
+      ++newer;
+      continue;
+    }
+    if (current_ == newer->first) current_ = older->first;
+    for (const auto& [keyframe, floor] : std::map(floors_))
+      if (floor == newer->first) assign(keyframe, older->first);
+    newer = heights_.erase(newer);
+  }
 }
 
 FloorId StoreyTracker::nearestTo(double z_m) const {

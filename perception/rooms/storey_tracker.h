@@ -15,8 +15,8 @@ struct StoreyConfig {
 
 // Which storey each keyframe stands on, from the heights along the path: a climb ends where the robot has
 // walked level again, on a storey that is known at this height, or on a new one. Stairs and ramps are climbs.
-// A lift shows no motion, so nothing changes in it. A robot that is carried to another height, between two
-// sessions, is on the storey of that height.
+// A robot that is carried to another height, between two sessions or in a lift, is on the storey of that
+// height. Storeys that turn out to lie at one height were one: the older stays.
 class StoreyTracker {
  public:
   explicit StoreyTracker(const StoreyConfig& config) : config_(config) {}
@@ -43,6 +43,7 @@ class StoreyTracker {
   double slope(size_t first) const;
   size_t firstWithin(double path_m) const;
   FloorId nearestTo(double z_m) const;
+  void uniteStoreys();
   void assign(KeyframeId keyframe, FloorId floor);
   void measureHeights(const std::map<KeyframeId, MapKeyframe>& keyframes);
 

@@ -21,14 +21,12 @@ Json readJson(const fs::path& path) {
   return Json::parse(in);
 }
 
-class LayersTest : public ::testing::TestWithParam<int> {
+class WholeChain : public ::testing::Test {
  protected:
-  LayersTest()
-      : folder_(fs::path(::testing::TempDir()) /
-                ("layers_test_" + std::to_string(GetParam()) + "_" + std::to_string(getpid()))) {
+  WholeChain() : folder_(fs::path(::testing::TempDir()) / ("layers_test_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
   }
-  ~LayersTest() override { fs::remove_all(folder_); }
+  ~WholeChain() override { fs::remove_all(folder_); }
 
   void run(const std::string& command) const {
     const fs::path said = folder_ / "said.txt";
@@ -41,8 +39,20 @@ class LayersTest : public ::testing::TestWithParam<int> {
   }
   std::string quoted(const char* name) const { return "'" + (folder_ / name).string() + "'"; }
 
+  // Walks through the plan, maps and judges it.
+  Json evaluate(const Json& plan) const {
+    std::ofstream(folder_ / "plan.json") << plan;
+    run("simulate " + quoted("plan.json") + " -o " + quoted("run.lcmlog") + " --truth " + quoted("truth") +
+        " --seed 3");
+    run("replay " + quoted("run.lcmlog") + " -o " + quoted("out"));
+    run("eval " + quoted("out") + " --truth " + quoted("truth"));
+    return readJson(folder_ / "out" / "eval.json");
+  }
+
   fs::path folder_;
 };
+
+class LayersTest : public WholeChain, public testing::WithParamInterface<int> {};
 
 TEST_P(LayersTest, WallsRoomsAndDoorwaysAreThoseOfThePlanAndCovariancesAreTrue) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -50,12 +60,7 @@ TEST_P(LayersTest, WallsRoomsAndDoorwaysAreThoseOfThePlanAndCovariancesAreTrue) 
 #endif
   Json plan = readJson(SGRAPHS_SOURCE_DIR "/config/scenes/small_office/plan.json");
   plan["path"]["start_heading_deg"] = GetParam();
-  std::ofstream(folder_ / "plan.json") << plan;
-  run("simulate " + quoted("plan.json") + " -o " + quoted("run.lcmlog") + " --truth " + quoted("truth") +
-      " --seed 3");
-  run("replay " + quoted("run.lcmlog") + " -o " + quoted("out"));
-  run("eval " + quoted("out") + " --truth " + quoted("truth"));
-  const Json eval = readJson(folder_ / "out" / "eval.json");
+  const Json eval = evaluate(plan);
 
   const Json& walls = eval["walls"];
   EXPECT_GE(walls["asked"]["faces"].get<int>(), 8);
@@ -95,6 +100,38 @@ TEST_P(LayersTest, WallsRoomsAndDoorwaysAreThoseOfThePlanAndCovariancesAreTrue) 
 
 INSTANTIATE_TEST_SUITE_P(StartHeading, LayersTest, testing::Values(0, 30, 45, 90),
                          [](const auto& param_info) { return "Degrees" + std::to_string(param_info.param); });
+
+// Up in a lift, round a room there, down again, and to the first room: two floors, of which the upper one's
+// height is not known, and every room once.
+TEST_F(WholeChain, ALiftLeadsToAnotherFloorAndBack) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "minutes of walking take too long under a sanitizer; shorter runs cover the same code";
+#endif
+  Json plan = readJson(SGRAPHS_SOURCE_DIR "/config/scenes/lift/plan.json");
+  plan["path"]["waypoints"] = Json::parse(R"([
+    [2.5, 2.6], [2.5, 6.0], [8.6, 6.0], [8.6, 3.4], [6.2, 3.4], [8.6, 3.8], [8.6, 6.0], [7.0, 6.0],
+    {"xy": [7.0, 8.05], "pause_s": 2.0, "lift": "A", "to_floor": 1},
+    [7.0, 6.0], [4.0, 6.0], [4.0, 3.4], [2.6, 3.0], [4.8, 2.0], [4.0, 3.2], [4.0, 6.0], [7.0, 6.0],
+    {"xy": [7.0, 8.05], "pause_s": 2.0, "lift": "A", "to_floor": 0},
+    [7.0, 6.0], [2.5, 6.0], [2.5, 2.8], [3.6, 2.0], [2.5, 2.4], [2.5, 6.0], [8.0, 6.0]])");
+  const Json eval = evaluate(plan);
+  EXPECT_EQ(eval["floors"]["in_graph"], 2);
+  EXPECT_EQ(eval["floors"]["recall"], 1.0);
+  EXPECT_EQ(eval["floors"]["by_lift"], 1);
+  EXPECT_EQ(eval["rooms"]["recall"], 1.0);
+  EXPECT_EQ(eval["rooms"]["precision"], 1.0);
+  EXPECT_LE(eval["walls"]["asked"]["missed"].get<int>(), 3) << "some are seen from afar only";
+  EXPECT_EQ(eval["walls"]["asked"]["doubled"], 0);
+  EXPECT_TRUE(eval["walls"]["false"].empty());
+  EXPECT_LT(eval["trajectories"]["trajectory.tum"]["ate_m"]["rmse"].get<double>(), 0.05);
+  EXPECT_GE(eval["loops"]["accepted"].get<int>(), 4);
+  EXPECT_EQ(eval["loops"]["false"], 0);
+  std::vector<bool> known;
+  const Json graph = readJson(folder_ / "out" / "graph.json");
+  for (const Json& node : graph["nodes"])
+    if (node["layer"] == "floors") known.push_back(node["height_known"]);
+  EXPECT_EQ(known, (std::vector<bool>{true, false}));
+}
 
 }  // namespace
 }  // namespace sgraphs

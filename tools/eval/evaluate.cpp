@@ -1,8 +1,10 @@
 #include "tools/eval/evaluate.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "common/base/error.h"
+#include "tools/eval/ride_heights.h"
 
 namespace sgraphs {
 namespace {
@@ -11,7 +13,8 @@ constexpr Duration kMaxGap{200'000};
 constexpr double kRelativePath_m = 1.0;
 constexpr Duration kRelativeTime{1'000'000};
 
-TrajectoryResult judgeTrajectory(const std::string& out_dir, const std::string& file, const Truth& truth) {
+TrajectoryResult judgeTrajectory(const std::string& out_dir, const std::string& file, const Truth& truth,
+                                 const std::optional<RideHeights>& rides) {
   TrajectoryResult result;
   result.file = file;
   const std::string path = out_dir + "/" + file;
@@ -21,6 +24,11 @@ TrajectoryResult judgeTrajectory(const std::string& out_dir, const std::string& 
   }
   try {
     result.poses = readTum(path);
+    result.time_coverage = timeCoverage(truth.poses, result.poses, kMaxGap);
+    if (rides) {
+      RideHeights(result.poses, truth.poses).correct(result.poses);
+      std::erase_if(result.poses, [&](const StampedPose& p) { return rides->riding(p.time); });
+    }
     result.absolute = absoluteError(truth.poses, result.poses);
   } catch (const Error& error) {
     result.missing = error.what();
@@ -29,19 +37,21 @@ TrajectoryResult judgeTrajectory(const std::string& out_dir, const std::string& 
   result.nearest_stamp_m = absoluteErrorNearestStamp(truth.poses, result.poses);
   result.per_metre = relativeErrorPerPath(truth.poses, result.poses, kRelativePath_m);
   result.per_second = relativeErrorPerTime(truth.poses, result.poses, kRelativeTime);
-  result.time_coverage = timeCoverage(truth.poses, result.poses, kMaxGap);
   return result;
 }
 
-MapResult judgeMap(const std::string& out_dir, const Truth& truth, const SE3& T_truth_map) {
+MapResult judgeMap(const std::string& out_dir, const Truth& truth, const SE3& T_truth_map,
+                   const std::optional<RideHeights>& rides) {
   MapResult result;
   const std::string path = out_dir + "/map.ply";
   if (!std::filesystem::exists(path)) {
     result.missing = "OUT has no map.ply";
     return result;
   }
-  for (const auto& p : readPlyPoints(path).points)
-    result.points_truth.push_back(T_truth_map * p.cast<double>());
+  for (const auto& p : readPlyPoints(path).points) {
+    const double rise_m = rides ? rides->shiftAt(static_cast<double>(p.z())) : 0.0;
+    result.points_truth.push_back(T_truth_map * (p.cast<double>() + Eigen::Vector3d(0, 0, rise_m)));
+  }
   if (!truth.mesh) result.missing = "the truth has no mesh.ply";
   if (result.points_truth.empty()) result.missing = "map.ply holds no point";
   if (!result.missing.empty()) return result;
@@ -81,11 +91,8 @@ void judgeLayers(const EstimatedGraph& graph, bool has_graph, const Truth& truth
     evaluation.by_storey = errorByStorey(plan, truth.poses, evaluation.trajectories.front().absolute);
 }
 
-void judgeGraph(const std::string& graph_json_path, const Truth& truth, const SE3& T_truth_map,
+void judgeGraph(const EstimatedGraph& graph, bool has_graph, const Truth& truth, const SE3& T_truth_map,
                 Evaluation& evaluation) {
-  const bool has_graph = std::filesystem::exists(graph_json_path);
-  EstimatedGraph graph;
-  if (has_graph) graph = readEstimatedGraph(graph_json_path);
   evaluation.walls.missing = whyWallsCannotBeJudged(has_graph, truth);
   if (evaluation.walls.missing.empty())
     evaluation.walls = judgeWalls(*truth.plan, MeshQuery(*truth.mesh), truth.poses, graph.walls, T_truth_map);
@@ -100,20 +107,33 @@ Evaluation evaluate(const std::string& out_dir, const Truth& truth) {
     throw Error("'" + out_dir + "' holds no trajectory.tum: make it with 'sgraphs replay LOG -o " + out_dir +
                 "'");
   Evaluation evaluation;
+  const std::string graph_path = out_dir + "/graph.json";
+  const bool has_graph = std::filesystem::exists(graph_path);
+  EstimatedGraph graph = has_graph ? readEstimatedGraph(graph_path) : EstimatedGraph{};
+  const bool by_lift = std::any_of(graph.floors.begin(), graph.floors.end(),
+                                   [](const EstimatedFloor& floor) { return !floor.height_known; });
+  std::optional<RideHeights> rides;
+  if (by_lift) rides.emplace(readTum(out_dir + "/trajectory.tum"), truth.poses);
   for (const char* file : {"trajectory.tum", "keyframes.tum", "odometry.tum"})
-    evaluation.trajectories.push_back(judgeTrajectory(out_dir, file, truth));
+    evaluation.trajectories.push_back(judgeTrajectory(out_dir, file, truth, rides));
   // Without the alignment nothing else can be judged.
   const TrajectoryResult& first = evaluation.trajectories.front();
   if (!first.missing.empty()) throw Error("cannot judge '" + out_dir + "/trajectory.tum': " + first.missing);
-  evaluation.map = judgeMap(out_dir, truth, first.absolute.T_truth_map);
-  if (std::filesystem::exists(out_dir + "/graph.json")) {
-    const std::vector<MeasuredLink> links = readMeasuredLinks(out_dir + "/graph.json");
+  evaluation.map = judgeMap(out_dir, truth, first.absolute.T_truth_map, rides);
+  if (rides) rides->correct(graph);
+  if (has_graph) {
+    std::vector<MeasuredLink> links = readMeasuredLinks(graph_path);
+    if (rides)
+      std::erase_if(links, [&](const MeasuredLink& link) {
+        return rides->riding(link.from) || rides->riding(link.to);
+      });
     evaluation.calibration = calibrationOf(links, truth.poses);
     evaluation.loops = judgeLoops(links, truth.poses);
   }
   if (evaluation.calibration.empty())
     evaluation.calibration_missing = "graph.json has no links with a covariance in the truth's time";
-  judgeGraph(out_dir + "/graph.json", truth, first.absolute.T_truth_map, evaluation);
+  judgeGraph(graph, has_graph, truth, first.absolute.T_truth_map, evaluation);
+  if (rides) evaluation.floors.by_lift = rides->levels() - 1;
   return evaluation;
 }
 

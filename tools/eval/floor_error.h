@@ -30,6 +30,7 @@ struct FloorResult {
     std::optional<double> z_m;  // in the building's frame
     std::string why_false;      // empty if it is not
   };
+  size_t by_lift = 0;               // levels whose height nothing measures: they were moved to where they are
   std::vector<Estimate> estimates;  // as the graph has them
 
   // A storey that the path is on for so long is asked for.

@@ -79,6 +79,7 @@ EstimatedFloor floorOf(const nlohmann::json& node) {
   if (node.contains("center"))
     floor.center = {node["center"].at(0).get<double>(), node["center"].at(1).get<double>()};
   if (node.contains("z") && !node["z"].is_null()) floor.z_m = node["z"].get<double>();
+  floor.height_known = node.value("height_known", true);
   return floor;
 }
 

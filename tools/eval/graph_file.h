@@ -44,6 +44,7 @@ struct EstimatedFloor {
   std::string id;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   std::optional<double> z_m;  // of the walking surface
+  bool height_known = true;   // false: a lift led there, and z_m is where the map has put it
 };
 
 struct EstimatedDoorway {

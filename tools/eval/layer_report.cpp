@@ -160,7 +160,13 @@ std::string floorLines(const FloorResult& floors, const std::vector<StoreyError>
   for (const StoreyError& error : by_storey)
     errors.push_back(storeyName(floors, error.storey) +
                      format(" %.4f m (%zu poses)", error.translation_m.rmse, error.translation_m.count));
-  return lines + listLine("floors", "ATE", errors);
+  lines += listLine("floors", "ATE", errors);
+  if (floors.by_lift > 0)
+    lines += format(
+        "floors    %zu reached by lift only, whose height nothing measures: moved to where it is before all "
+        "else was judged, the rides left out\n",
+        floors.by_lift);
+  return lines;
 }
 
 std::string doorwayLines(const DoorwayResult& doorways) {
@@ -215,6 +221,7 @@ Json floorsJson(const FloorResult& floors, const std::vector<StoreyError>& by_st
     json["storeys"] = Json::array();
     for (size_t s = 0; s < floors.storeys.size(); ++s) json["storeys"].push_back(storeyJson(floors, s));
   }
+  if (floors.by_lift > 0) json["by_lift"] = floors.by_lift;
   if (!by_storey.empty()) json["ate_by_storey"] = storeyErrorsJson(by_storey);
   return json;
 }

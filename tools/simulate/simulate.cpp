@@ -10,6 +10,7 @@
 #include "common/io/tum.h"
 #include "drivers/recording/recording_writer.h"
 #include "tools/simulate/building/building.h"
+#include "tools/simulate/building/lift_doors.h"
 #include "tools/simulate/building/mesh_surface.h"
 #include "tools/simulate/scene/scene_file.h"
 #include "tools/simulate/scene/scene_source.h"
@@ -134,14 +135,16 @@ SimulateResult simulate(const SimulateOptions& options, const Progress& progress
   TriangleMesh mesh = buildMesh(scene);
   append(mesh, source.imported);
   const RayCaster caster(mesh, buildGlass(scene));
-  const Trajectory trajectory =
-      walkAlong(scene.path, scene.start, scene.floors_z_m[static_cast<size_t>(scene.path_floor)]);
+  const double floor_z_m = scene.floors_z_m[static_cast<size_t>(scene.path_floor)];
+  const Trajectory trajectory = walkAlong(scene.path, scene.start, floor_z_m);
+  const LiftDoors doors(scene, trajectory.rides(), floor_z_m);
   const SensorSimulator sensor(caster, trajectory, scene.T_body_lidar, scene.sensor, options.seed,
-                               People(scene.people, scene.floors_z_m));
+                               People(scene.people, scene.floors_z_m), doors);
   std::vector<BodyOdometry> odometry;
   if (options.with_odometry) odometry = simulateLegsOdometry(trajectory, scene.legs, options.seed);
   const auto num_odometry = static_cast<int64_t>(odometry.size());
 
+  append(mesh, doors.closed());
   if (!options.truth_dir.empty()) writeTruth(options.truth_dir, scene, mesh, trajectory);
   LogWriter log(options.output);
   RecordingWriter writer(log, describe(options, source));

@@ -57,5 +57,32 @@ TEST(FloorLevelTest, EachStoreyOfAKeyframeIsDescribed) {
   EXPECT_TRUE(floors.contains({2}));
 }
 
+// Keyframes 0 and 1 on one floor, a ride from 1 to 2, stairs from 2 to 3, a ride back to 4.
+TEST(FloorLevelTest, HeightsAcrossRidesAreUnknownUntilALoopMeasuresThem) {
+  SituationalGraph graph;
+  for (int64_t i = 0; i < 5; ++i) graph.keyframes[{i}].id = {i};
+  for (const auto& [id, floor] : {std::pair{2, 1}, std::pair{3, 2}, std::pair{4, 3}})
+    graph.keyframes[{id}].floor = {floor};
+  graph.keyframes[{0}].floor = graph.keyframes[{1}].floor = {0};
+  for (int64_t i = 1; i < 5; ++i) {
+    RelativePose z;
+    z.from = {i - 1};
+    z.to = {i};
+    z.covariance = 1e-4 * Matrix6d::Identity();
+    if (i == 2 || i == 4) z.covariance(2, 2) = 400;
+    graph.relative_poses.push_back({i, z});
+  }
+  EXPECT_EQ(floorsOfUnknownHeight(graph), (std::set<FloorId>{{1}, {2}, {3}}));
+  RelativePose loop;
+  loop.kind = RelativePoseKind::kLoop;
+  loop.from = {0};
+  loop.to = {4};
+  loop.covariance = 1e-4 * Matrix6d::Identity();
+  graph.relative_poses.push_back({9, loop});
+  EXPECT_EQ(floorsOfUnknownHeight(graph), (std::set<FloorId>{{1}, {2}}));
+  graph.keyframes[{4}].floor = {0};
+  EXPECT_EQ(floorsOfUnknownHeight(graph), (std::set<FloorId>{{1}, {2}}));
+}
+
 }  // namespace
 }  // namespace sgraphs

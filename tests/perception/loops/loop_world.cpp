@@ -105,7 +105,7 @@ LoopWalk walkThrough(const simulate::Scene& scene, uint64_t seed, double max_pat
   LoopWalk walk;
   double walked_m = 0;
   for (double t = 0; t < truth.duration().seconds() && walked_m < max_path_m; t += 0.1) {
-    const SE3 T = truth.poseAtOffset(t);
+    const SE3 T = truth.seenPoseAtOffset(t);
     if (!walk.keyframes.empty()) {
       const SE3 step = walk.T_building_body.back().inverse() * T;
       if (step.translation.norm() < 1.0 && angleOf(step) < 0.6) continue;

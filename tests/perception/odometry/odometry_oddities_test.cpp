@@ -1,6 +1,7 @@
 // What may come in besides a clean stream: lost, empty, poor and impossible scans, and jumps.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "perception/odometry/odometry.h"
@@ -263,6 +264,53 @@ TEST(OdometryOdditiesTest, ACorridorDoesNotBendScansAndTurningInItIsFollowed) {
   EXPECT_LT(standing, 0.06);
   EXPECT_LT(fastest, 1.3);
   EXPECT_LT(trajectoryError(run, walk.truth), 0.02);
+}
+
+// One floor up in the lift of the scene of that name, whose doors open on a lobby that looks like the one
+// below: without the ride both would be one place.
+TEST(OdometryOdditiesTest, ALiftLeadsToAFloorOfItsOwn) {
+  simulate::Scene scene = simulate::loadScene(simulate::findScene("lift"));
+  const auto ride = std::find_if(scene.path.waypoints.begin(), scene.path.waypoints.end(),
+                                 [](const simulate::Waypoint& w) { return w.lift >= 0; });
+  scene.path.waypoints = {
+      {{9.5, 6.0}}, {{7.0, 6.0}}, *ride, {{7.0, 6.0}, 0, 0, ride->ride_m}, {{4.0, 6.0}, 0, 0, ride->ride_m}};
+  const SimulatedWalk walk = walkThrough(scene, 4);
+  const simulate::Ride taken = walk.truth.rides().front();
+  const double rise_m = OdometryConfig().lifts.storey_offset_m;
+  for (const OdometryMode mode : {OdometryMode::kLidar, OdometryMode::kFused, OdometryMode::kEncoder}) {
+    const OdometryRun run = runOdometry(walk, mode);
+    std::vector<RelativePose> rides;
+    for (const Keyframe& k : run.keyframes)
+      for (const RelativePose& z : k.relative_poses)
+        if (leavesHeightOpen(z)) rides.push_back(z);
+    ASSERT_EQ(rides.size(), 1u);
+    EXPECT_NEAR(rides[0].T_from_to.translation.z(), rise_m, 0.1);
+    EXPECT_LT(rides[0].T_from_to.translation.head<2>().norm(), 0.05 * rise_m);
+    // The door begins to open at taken.arrives_s; a robot that stands beyond it is let out.
+    const OdometryEstimate* before = nullptr;
+    const OdometryEstimate* after = nullptr;
+    for (const OdometryEstimate& e : run.estimates) {
+      const double s = (e.time - walk.truth.start()).seconds();
+      if (s < taken.arrives_s) before = &e;
+      if (s > taken.door_opens_s && !after) after = &e;
+    }
+    ASSERT_TRUE(before && after);
+    EXPECT_NEAR((after->T_odom_body.translation - before->T_odom_body.translation).z(), rise_m, 0.1);
+    EXPECT_LT((after->T_odom_body.translation - before->T_odom_body.translation).head<2>().norm(), 0.02);
+    // On both floors it walks as ever.
+    const OdometryEstimate& last = run.estimates.back();
+    const SE3 walked = after->T_odom_body.inverse() * last.T_odom_body;
+    const SE3 truth = walk.truth.poseAt(after->time).inverse() * walk.truth.poseAt(last.time);
+    const Eigen::Vector3d off = (truth.inverse() * walked).translation;
+    EXPECT_LT(off.head<2>().norm(), mode == OdometryMode::kEncoder ? 0.3 : 0.03);
+    // From within a car neither floor nor ceiling is seen: the height is the legs' until it has been left.
+    EXPECT_LT(std::abs(off.z()), 0.2);
+    // What was seen of the lobby below is not in a cloud of the floor above.
+    const auto first_above = std::find_if(run.keyframes.begin(), run.keyframes.end(),
+                                          [&](const Keyframe& k) { return k.id == rides[0].to; });
+    ASSERT_NE(first_above, run.keyframes.end());
+    for (const KeyframePoint& p : first_above->points) EXPECT_LT(std::abs(p.position_body.z()), 4);
+  }
 }
 
 }  // namespace

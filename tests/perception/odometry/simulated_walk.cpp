@@ -60,7 +60,8 @@ SimulatedWalk walkThrough(const simulate::Scene& scene, uint64_t seed,
   const simulate::SimulatedWorld world(scene);
   const simulate::Trajectory truth = simulate::walkAlong(scene.path, scene.start, scene.floors_z_m.front());
   const simulate::SensorSimulator sensor(world.caster, truth, scene.T_body_lidar, scene.sensor, seed,
-                                         simulate::People(scene.people, scene.floors_z_m));
+                                         simulate::People(scene.people, scene.floors_z_m),
+                                         simulate::LiftDoors(scene, truth.rides(), scene.floors_z_m.front()));
   SimulatedWalk walk{truth, scene.T_body_lidar, {}, simulate::simulateLegsOdometry(truth, legs, seed)};
   walk.scans.resize(static_cast<size_t>(sensor.numScans()));
   const auto work = [&](size_t first) {

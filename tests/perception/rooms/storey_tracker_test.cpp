@@ -129,11 +129,31 @@ TEST_F(StoreyTrackerTest, LandingHalfWayIsNoStorey) {
   EXPECT_EQ(tracker_.bodyHeights().size(), 2u);
 }
 
-TEST_F(StoreyTrackerTest, LiftShowsNoMotionAndNothingHappens) {
+TEST_F(StoreyTrackerTest, StandingChangesNothing) {
   walk(5, 0);
   for (int i = 0; i < 10; ++i) add(0);
   EXPECT_EQ(walk(5, 0), FloorId{0});
   EXPECT_EQ(tracker_.bodyHeights().size(), 1u);
+}
+
+// The odometry puts every floor to which a lift leads far from all others; loops tell that one is known.
+TEST_F(StoreyTrackerTest, LiftsLeadToNewStoreysAndThoseThatComeToLieTogetherAreOne) {
+  walk(10, 0);
+  add(z_ = 20);
+  EXPECT_EQ(walk(8, 20), FloorId{1});
+  add(z_ = 40);
+  EXPECT_EQ(walk(8, 40), FloorId{2});
+  const int64_t newest = static_cast<int64_t>(keyframes_.size());
+  for (auto& [id, keyframe] : keyframes_)
+    if (keyframe.T_map_body.translation.z() > 30) keyframe.T_map_body.translation.z() -= 40;
+  z_ = 0;
+  EXPECT_EQ(walk(2, 0), FloorId{0});
+  EXPECT_EQ(tracker_.bodyHeights().size(), 2u);
+  EXPECT_EQ(count(FloorId{2}), 0);
+  EXPECT_EQ(told_.at(KeyframeId{newest - 1}), FloorId{0});
+  EXPECT_EQ(count(FloorId{1}), 9);
+  add(z_ = 60);
+  EXPECT_EQ(walk(8, 60), FloorId{3}) << "ids are not used again";
 }
 
 // The next session began upstairs.

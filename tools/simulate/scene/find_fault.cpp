@@ -14,6 +14,7 @@ namespace {
 using Fault = std::optional<std::string>;
 
 constexpr int kMostSteps = 1000;
+constexpr double kDoorInDoorway_m = 0.2;  // between the middles of a lift's door and its doorway
 
 // Whether the item has a height; if not, what to say.
 Fault heightFault(const std::string& name, double z_min_m, double z_max_m) {
@@ -85,6 +86,24 @@ Fault solidsFault(const Scene& scene) {
   return std::nullopt;
 }
 
+Fault liftsFault(const Scene& scene) {
+  for (size_t i = 0; i < scene.lifts.size(); ++i) {
+    const Lift& lift = scene.lifts[i];
+    const std::string name = item("lifts", i);
+    if (lift.floors.size() < 2) return name + " stops on fewer than two floors: list two or more";
+    if (!((lift.door_b - lift.door_a).norm() >= 1e-3))
+      return name + " has a door without width: its ends are both " + text(lift.door_a);
+    const Eigen::Vector2d middle = 0.5 * (lift.door_a + lift.door_b);
+    for (const int floor : lift.floors)
+      if (std::none_of(scene.doorways.begin(), scene.doorways.end(), [&](const Doorway& doorway) {
+            return doorway.floor == floor && (doorway.xyz.head<2>() - middle).norm() < kDoorInDoorway_m;
+          }))
+        return name + " has a door at " + text(middle) + " where floor " + std::to_string(floor) +
+               " has no doorway: give it one";
+  }
+  return std::nullopt;
+}
+
 Fault peopleFault(const Scene& scene) {
   for (size_t i = 0; i < scene.people.size(); ++i) {
     const Person& person = scene.people[i];
@@ -117,7 +136,8 @@ Fault roomsFault(const Scene& scene) {
 Fault findFault(const Scene& scene) {
   if (scene.walls.empty() && scene.slabs.empty() && scene.meshes.empty())
     return "there is neither a wall nor a slab nor a mesh: give walls";
-  for (const auto& find : {wallFault, openingsFault, solidsFault, peopleFault, roomsFault, findWalkFault})
+  for (const auto& find :
+       {wallFault, openingsFault, solidsFault, liftsFault, peopleFault, roomsFault, findWalkFault})
     if (auto fault = find(scene)) return fault;
   return std::nullopt;
 }

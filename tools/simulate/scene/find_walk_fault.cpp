@@ -21,7 +21,7 @@ double floorOf(const Scene& scene) {
 }
 
 Foothold footholdOf(const Scene& scene, const Waypoint& waypoint) {
-  return {waypoint.xy, floorOf(scene) + waypoint.rise_m};
+  return {waypoint.xy, floorOf(scene) + waypoint.rise_m + waypoint.ridden_m};
 }
 
 std::string nameOf(size_t waypoint, const Foothold& at) {
@@ -87,7 +87,9 @@ Fault passageFault(const Scene& scene, const Obstacles& obstacles) {
   };
   const auto& points = scene.path.waypoints;
   for (size_t i = 0; i + 1 < points.size(); ++i) {
-    const Foothold from = footholdOf(scene, points[i]), to = footholdOf(scene, points[i + 1]);
+    const Foothold to = footholdOf(scene, points[i + 1]);
+    Foothold from = footholdOf(scene, points[i]);
+    from.z_m += points[i].ride_m;
     const int samples = static_cast<int>(std::ceil((to.xy - from.xy).norm() / kSample_m));
     for (int k = 0; k <= samples; ++k) {
       const double share = static_cast<double>(k) / samples;
@@ -104,7 +106,7 @@ Fault passageFault(const Scene& scene, const Obstacles& obstacles) {
   const double seconds = walk.duration().seconds();
   const int samples = static_cast<int>(std::ceil(seconds * scene.path.speed_mps / kSample_m));
   for (int k = 0; k <= samples; ++k) {
-    const Eigen::Vector3d body = walk.poseAtOffset(seconds * k / std::max(1, samples)).translation;
+    const Eigen::Vector3d body = walk.seenPoseAtOffset(seconds * k / std::max(1, samples)).translation;
     const Foothold at{body.head<2>(), body.z() - scene.path.body_height_m};
     if (auto fault = blocked(at, "the walk, which rounds corners,")) return fault;
   }

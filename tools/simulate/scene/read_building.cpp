@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -75,6 +76,26 @@ void readSolids(const PlanReader& in, Scene& scene) {
   });
 }
 
+void readLifts(const PlanReader& in, Scene& scene) {
+  in.forEach("lifts", [&](const PlanReader& in_lift) {
+    in_lift.allowOnly({"name", "floors", "door", "door_height"});
+    Lift lift;
+    lift.name = in_lift.text("name", "");
+    for (const double number : in_lift.numbers("floors", 0)) {
+      if (number < 0 || number >= static_cast<double>(scene.floors_z_m.size()) ||
+          number != std::floor(number))
+        in_lift.fail("floors", "must list indices of the plan's floors");
+      lift.floors.push_back(static_cast<int>(number));
+    }
+    const auto door = pointList(in_lift, "door");
+    if (door.size() != 2) in_lift.fail("door", "must be the door's two ends: [[x, y], [x, y]]");
+    lift.door_a = door[0];
+    lift.door_b = door[1];
+    lift.door_height_m = in_lift.number("door_height", lift.door_height_m, 0.5, 10);
+    scene.lifts.push_back(lift);
+  });
+}
+
 void readPeople(const PlanReader& in, Scene& scene) {
   in.forEach("people", [&](const PlanReader& in_person) {
     in_person.allowOnly({"floor", "waypoints", "speed_mps", "start_s"});
@@ -114,6 +135,7 @@ void readBuilding(const PlanReader& in, Scene& scene) {
   if (scene.floors_z_m.empty()) in.fail("floors", "must list the height of at least one floor");
   readWalls(in, scene);
   readSolids(in, scene);
+  readLifts(in, scene);
   readPeople(in, scene);
   readMeshes(in, scene);
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,21 +13,46 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<Waypoint> readWaypoints(const PlanReader& in, double floor_z_m) {
+// The ride that begins at the waypoint, which stands on a floor where the lift stops.
+void readRide(const PlanReader& in, const Scene& scene, double z_m, Waypoint& waypoint) {
+  const std::string name = in.text("lift", "");
+  for (size_t i = 0; i < scene.lifts.size(); ++i) {
+    const Lift& lift = scene.lifts[i];
+    if (lift.name != name) continue;
+    const auto stopsAt = [&](double height_m) {
+      return std::any_of(lift.floors.begin(), lift.floors.end(), [&](int floor) {
+        return std::abs(scene.floors_z_m[static_cast<size_t>(floor)] - height_m) < 1e-6;
+      });
+    };
+    const int to = in.integer("to_floor", -1);
+    if (std::find(lift.floors.begin(), lift.floors.end(), to) == lift.floors.end())
+      in.fail("to_floor", "is " + std::to_string(to) + ": lift '" + name + "' does not stop there");
+    if (!stopsAt(z_m)) in.fail("lift", "'" + name + "' does not stop at z = " + std::to_string(z_m));
+    waypoint.lift = static_cast<int>(i);
+    waypoint.ride_m = scene.floors_z_m[static_cast<size_t>(to)] - z_m;
+    return;
+  }
+  in.fail("lift", "'" + name + "' is not one of the plan's lifts");
+}
+
+std::vector<Waypoint> readWaypoints(const PlanReader& in, const Scene& scene) {
+  const double floor_z_m = scene.floors_z_m[static_cast<size_t>(scene.path_floor)];
   std::vector<Waypoint> waypoints;
-  double rise_m = 0;  // holds until the next z
+  double rise_m = 0, ridden_m = 0;  // hold until the next z, the next ride
   const json& list = in.array("waypoints");
   for (size_t i = 0; i < list.size(); ++i) {
     const std::string item = "waypoints[" + std::to_string(i) + "]";
     const json& p = list[i];
     if (p.is_array() && p.size() == 2 && p[0].is_number() && p[1].is_number()) {
-      waypoints.push_back({{p[0].get<double>(), p[1].get<double>()}, 0, rise_m});
+      waypoints.push_back({{p[0].get<double>(), p[1].get<double>()}, 0, rise_m, ridden_m});
     } else if (p.is_object()) {
       const PlanReader waypoint(p, "", "");
       try {
-        waypoint.allowOnly({"xy", "pause_s", "z"});
-        if (waypoint.has("z")) rise_m = waypoint.number("z") - floor_z_m;
-        waypoints.push_back({waypoint.xy("xy"), waypoint.number("pause_s", 0, 0, 3600), rise_m});
+        waypoint.allowOnly({"xy", "pause_s", "z", "lift", "to_floor"});
+        if (waypoint.has("z")) rise_m = waypoint.number("z") - floor_z_m - ridden_m;
+        waypoints.push_back({waypoint.xy("xy"), waypoint.number("pause_s", 0, 0, 3600), rise_m, ridden_m});
+        if (waypoint.has("lift")) readRide(waypoint, scene, floor_z_m + rise_m + ridden_m, waypoints.back());
+        ridden_m += waypoints.back().ride_m;
       } catch (const Error& error) {
         in.fail(item, std::string("is wrong") + error.what());
       }
@@ -54,7 +81,7 @@ void readPath(const PlanReader& in, Scene& scene) {
                 "body_height_m", "clearance_m", "gait"});
   WalkPath& path = scene.path;
   scene.path_floor = readFloor(in, scene);
-  path.waypoints = readWaypoints(in, scene.floors_z_m[static_cast<size_t>(scene.path_floor)]);
+  path.waypoints = readWaypoints(in, scene);
   path.start_heading_rad = in.number("start_heading_deg", 0, -360, 360) * kDegree_rad;
   path.start_pause_s = in.number("start_pause_s", path.start_pause_s, 0, 3600);
   path.end_pause_s = in.number("end_pause_s", path.end_pause_s, 0, 3600);

@@ -82,6 +82,16 @@ struct Stairs {
   int steps = 17;
 };
 
+// The door of a lift, the same on each floor where the lift stops; it stands in a doorway of each floor. The
+// car's walls are walls of the plan: they must be the same on each floor, as a rider sees nothing else.
+struct Lift {
+  std::string name;
+  std::vector<int> floors;
+  Eigen::Vector2d door_a = Eigen::Vector2d::Zero();  // jambs: two leaves meet half-way
+  Eigen::Vector2d door_b = Eigen::Vector2d::Zero();
+  double door_height_m = 2.1;
+};
+
 // Somebody who walks to and fro along a line, or stands (one waypoint); seen by the sensor, not in the mesh.
 struct Person {
   int floor = 0;
@@ -118,6 +128,7 @@ struct Scene {
   std::vector<Box> boxes;
   std::vector<Column> columns;
   std::vector<Stairs> stairs;
+  std::vector<Lift> lifts;
   std::vector<Person> people;
   std::vector<Slab> slabs;
   std::vector<MeshFile> meshes;

@@ -35,9 +35,9 @@ json parseJson(const std::string& text, const std::string& where) {
 Scene parseScene(const std::string& text, const std::string& where) {
   const json plan = parseJson(text, where);
   const PlanReader in(plan, where, "");
-  in.refuseMisspelt({"scene",    "seed",    "duration_s", "T_body_lidar", "floors", "rooms",      "walls",
-                     "doorways", "windows", "boxes",      "columns",      "stairs", "people",     "slabs",
-                     "meshes",   "sensor",  "legs",       "faults",       "path",   "start_utime"});
+  in.refuseMisspelt({"scene",    "seed",    "duration_s", "T_body_lidar", "floors", "rooms",       "walls",
+                     "doorways", "windows", "boxes",      "columns",      "stairs", "lifts",       "people",
+                     "slabs",    "meshes",  "sensor",     "legs",         "faults", "start_utime", "path"});
   Scene scene;
   scene.name = in.text("scene", "");
   if (in.has("start_utime")) scene.start.us = static_cast<int64_t>(in.number("start_utime", 0, 0, 4e15));

@@ -56,6 +56,11 @@ void writeSolids(const Scene& scene, ordered_json& plan) {
                               {"width", stairs.width_m},
                               {"z", {stairs.z_min_m, stairs.z_max_m}},
                               {"steps", stairs.steps}});
+  for (const Lift& lift : scene.lifts)
+    plan["lifts"].push_back({{"name", lift.name},
+                             {"floors", lift.floors},
+                             {"door", {listOf(lift.door_a), listOf(lift.door_b)}},
+                             {"door_height", lift.door_height_m}});
 }
 
 }  // namespace

@@ -78,11 +78,11 @@ std::vector<BodyOdometry> simulateLegsOdometry(const Trajectory& trajectory, con
   DriftingState state(model, random);
   std::vector<BodyOdometry> samples;
   const Duration offset = Duration::fromSeconds(model.clock_offset_s);
-  SE3 before = trajectory.poseAt(trajectory.start());
+  SE3 before = trajectory.feltPoseAt(trajectory.start());
   for (int64_t k = 0;; ++k) {
     const Time time = trajectory.start() + Duration::fromSeconds(static_cast<double>(k) / model.rate_hz);
     if (time > trajectory.end()) break;
-    const SE3 truth = trajectory.poseAt(time);
+    const SE3 truth = trajectory.feltPoseAt(time);
     double white = 0;
     if (k > 0) {
       state.move(before, truth);

@@ -56,13 +56,14 @@ uint32_t microsecondsPastHour(Time time) {
 
 SensorSimulator::SensorSimulator(const RayCaster& building, const Trajectory& trajectory,
                                  const SE3& T_body_lidar, const SensorModel& model, uint64_t seed,
-                                 People people)
+                                 People people, LiftDoors doors)
     : building_(building),
       trajectory_(trajectory),
       T_body_lidar_(T_body_lidar),
       model_(model),
       seed_(seed),
-      people_(std::move(people)) {
+      people_(std::move(people)),
+      doors_(std::move(doors)) {
   for (size_t i = 0; i < kLasers; ++i) {
     cos_elevation_[i] = std::cos(kElevation_deg[i] * kDegree_rad);
     sin_elevation_[i] = std::sin(kElevation_deg[i] * kDegree_rad);
@@ -74,10 +75,13 @@ double SensorSimulator::azimuthDeg(double offset_us) const {
 }
 
 std::optional<RayHit> SensorSimulator::firstReturn(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray,
-                                                   const PeopleNow& people, uint64_t firing) const {
+                                                   const MovingNow& moving, uint64_t firing) const {
   auto hit = building_.cast(origin, ray, model_.max_range_m);
-  if (!people.empty())
-    if (const auto person = people.cast(origin, ray, hit ? hit->range_m : model_.max_range_m)) hit = person;
+  const auto reach_m = [&] { return hit ? hit->range_m : model_.max_range_m; };
+  if (!moving.people.empty())
+    if (const auto person = moving.people.cast(origin, ray, reach_m())) hit = person;
+  if (!moving.doors.empty())
+    if (const auto door = moving.doors.cast(origin, ray, reach_m())) hit = door;
   if (!building_.hasGlass()) return hit;
   RandomStream random(seed_ ^ kGlassSeed, firing);
   const double end_m = hit ? hit->range_m : model_.max_range_m;
@@ -92,16 +96,16 @@ std::optional<RayHit> SensorSimulator::firstReturn(const Eigen::Vector3d& origin
   return hit;
 }
 
-SensorSimulator::Return SensorSimulator::measure(int64_t sequence, int laser, const PeopleNow& people,
+SensorSimulator::Return SensorSimulator::measure(int64_t sequence, int laser, const MovingNow& moving,
                                                  double noise, double chance) const {
   const auto i = static_cast<size_t>(laser);
   const double offset_us = static_cast<double>(sequence) * kSequencePeriod_us + laser * kLaserPeriod_us;
   const double azimuth = azimuthDeg(offset_us) * kDegree_rad;
   const Eigen::Vector3d ray_lidar(cos_elevation_[i] * std::cos(azimuth),
                                   -cos_elevation_[i] * std::sin(azimuth), sin_elevation_[i]);
-  const SE3 T_building_lidar = trajectory_.poseAtOffset(offset_us * 1e-6) * T_body_lidar_;
+  const SE3 T_building_lidar = trajectory_.seenPoseAtOffset(offset_us * 1e-6) * T_body_lidar_;
   const Eigen::Vector3d origin = T_building_lidar * Eigen::Vector3d(0, 0, kVerticalOffset_mm[i] * 1e-3);
-  const auto hit = firstReturn(origin, T_building_lidar.rotation * ray_lidar, people,
+  const auto hit = firstReturn(origin, T_building_lidar.rotation * ray_lidar, moving,
                                static_cast<uint64_t>(sequence * kLasers + laser));
   if (!hit || hit->range_m < model_.min_range_m) return {};
   const double incidence_deg = std::acos(hit->cos_incidence) / kDegree_rad;
@@ -115,11 +119,12 @@ SensorSimulator::Return SensorSimulator::measure(int64_t sequence, int laser, co
 
 std::array<SensorSimulator::Return, kLasers> SensorSimulator::fire(int64_t sequence) const {
   RandomStream random(seed_, static_cast<uint64_t>(sequence));
-  const PeopleNow people = people_.at(static_cast<double>(sequence) * kSequencePeriod_us * 1e-6);
+  const double seconds = static_cast<double>(sequence) * kSequencePeriod_us * 1e-6;
+  const MovingNow moving{people_.at(seconds), doors_.at(seconds)};
   std::array<Return, kLasers> returns;
   for (int laser = 0; laser < kLasers; ++laser) {
     const double noise = random.normal(), chance = random.uniform();
-    returns[static_cast<size_t>(laser)] = measure(sequence, laser, people, noise, chance);
+    returns[static_cast<size_t>(laser)] = measure(sequence, laser, moving, noise, chance);
   }
   return returns;
 }

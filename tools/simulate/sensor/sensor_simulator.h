@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/types/lidar_scan.h"
+#include "tools/simulate/building/lift_doors.h"
 #include "tools/simulate/building/people.h"
 #include "tools/simulate/building/ray_caster.h"
 #include "tools/simulate/sensor/sensor_model.h"
@@ -31,7 +32,7 @@ class SensorSimulator {
  public:
   // Keeps references to `building`: it must outlive the simulator.
   SensorSimulator(const RayCaster& building, const Trajectory& trajectory, const SE3& T_body_lidar,
-                  const SensorModel& model = {}, uint64_t seed = 0, People people = {});
+                  const SensorModel& model = {}, uint64_t seed = 0, People people = {}, LiftDoors doors = {});
 
   // Packets that are complete by the trajectory's end.
   int64_t numPackets() const;
@@ -52,14 +53,19 @@ class SensorSimulator {
     double range_m = 0;  // multiple of 2 mm; 0: none
     uint8_t reflectivity = 0;
   };
+  struct MovingNow {
+    PeopleNow people;
+    LiftDoorsNow doors;
+  };
 
   double azimuthDeg(double offset_us) const;  // not wrapped
   std::array<Return, vlp16::kLasers> fire(int64_t sequence) const;
   // What one laser of one firing sequence measures.
-  Return measure(int64_t sequence, int laser, const PeopleNow& people, double noise, double chance) const;
-  // The surface that sends the ray back: the building's or a person's, or a pane of glass before it.
+  Return measure(int64_t sequence, int laser, const MovingNow& moving, double noise, double chance) const;
+  // The surface that sends the ray back: the building's, a person's or a lift's door, or a pane of glass
+  // before it.
   std::optional<RayHit> firstReturn(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray,
-                                    const PeopleNow& people, uint64_t firing) const;
+                                    const MovingNow& moving, uint64_t firing) const;
 
   const RayCaster& building_;
   Trajectory trajectory_;
@@ -67,6 +73,7 @@ class SensorSimulator {
   SensorModel model_;
   uint64_t seed_;
   People people_;
+  LiftDoors doors_;
   std::array<double, vlp16::kLasers> cos_elevation_;
   std::array<double, vlp16::kLasers> sin_elevation_;
 };

@@ -60,10 +60,12 @@ Trajectory walkAlong(const WalkPath& path, Time start, double floor_z_m) {
   const WalkPlan plan(path);
   const auto spline = std::make_shared<const Spline>(plan);
   const double height_m = floor_z_m + path.body_height_m;
-  return {start, Duration::fromSeconds(plan.duration()),
-          [spline, height_m, gait = path.gait](double seconds) {
-            return bodyPose(spline->at(seconds), height_m, gait, seconds);
-          }};
+  Trajectory trajectory(start, Duration::fromSeconds(plan.duration()),
+                        [spline, height_m, gait = path.gait](double seconds) {
+                          return bodyPose(spline->at(seconds), height_m, gait, seconds);
+                        });
+  trajectory.setRides(plan.rides());
+  return trajectory;
 }
 
 }  // namespace sgraphs::simulate

@@ -14,7 +14,18 @@ struct Waypoint {
   // distance walked: stairs and ramps begin and end at waypoints. The body pitches along, as the ground under
   // its feet does, 0.3 m before and behind its middle.
   double rise_m = 0;
+  // What lifts have raised the body by until here; rise_m is without.
+  double ridden_m = 0;
+  // Here the body rides in this lift of the scene, after the pause: by ride_m, upwards if positive.
+  int lift = -1;
+  double ride_m = 0;
 };
+
+// A lift's door takes kDoor_s to close and to open; the car moves at kRide_mps, and to start and to stop it
+// takes kRideStart_s more, all together.
+inline constexpr double kDoor_s = 2.0;
+inline constexpr double kRide_mps = 1.0;
+inline constexpr double kRideStart_s = 2.5;
 
 // Sway of a walking quadruped; it fades in and out with the motion.
 struct Gait {

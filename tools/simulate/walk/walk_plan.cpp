@@ -144,6 +144,7 @@ WalkPlan::WalkPlan(const WalkPath& path) : path_(path) {
     turn(wrap(headingOf(points[first + 1].xy - points[first].xy) - now_.yaw_rad));
     run(first, last);
     stand(points[last].pause_s);
+    ride(points[last]);
     first = last;
   }
   stand(path_.end_pause_s);
@@ -172,6 +173,20 @@ void WalkPlan::append(double duration_s, std::function<WalkState(double)> state)
 
 void WalkPlan::stand(double seconds) {
   append(seconds, [state = now_](double) { return state; });
+}
+
+void WalkPlan::ride(const Waypoint& waypoint) {
+  if (waypoint.lift < 0) return;
+  Ride ride;
+  ride.lift = static_cast<size_t>(waypoint.lift);
+  ride.from_m = waypoint.rise_m + waypoint.ridden_m;
+  ride.to_m = ride.from_m + waypoint.ride_m;
+  ride.door_closes_s = duration_s_;
+  ride.leaves_s = ride.door_closes_s + kDoor_s;
+  ride.arrives_s = ride.leaves_s + std::abs(waypoint.ride_m) / kRide_mps + kRideStart_s;
+  ride.door_opens_s = ride.arrives_s + kDoor_s;
+  stand(ride.door_opens_s - ride.door_closes_s);
+  rides_.push_back(ride);
 }
 
 void WalkPlan::turn(double angle_rad) {
@@ -210,7 +225,8 @@ double WalkPlan::cornerRadius(size_t waypoint) const {
 }
 
 bool WalkPlan::stopsAt(size_t waypoint) const {
-  return path_.waypoints[waypoint].pause_s > 0 || cornerRadius(waypoint) < kSmallestRadius_m;
+  return path_.waypoints[waypoint].pause_s > 0 || path_.waypoints[waypoint].lift >= 0 ||
+         cornerRadius(waypoint) < kSmallestRadius_m;
 }
 
 void WalkPlan::run(size_t first, size_t last) {

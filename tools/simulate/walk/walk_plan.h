@@ -38,6 +38,7 @@ class WalkPlan {
   explicit WalkPlan(const WalkPath& path);
 
   double duration() const { return duration_s_; }
+  const std::vector<Ride>& rides() const { return rides_; }
   // States before the start and after the end are the first and the last.
   WalkState at(double seconds) const;
 
@@ -49,6 +50,7 @@ class WalkPlan {
   };
 
   void stand(double seconds);
+  void ride(const Waypoint& waypoint);
   void turn(double angle_rad);
   // Walks from waypoint `first` to waypoint `last` with arcs at the corners between.
   void run(size_t first, size_t last);
@@ -59,6 +61,7 @@ class WalkPlan {
   WalkPath path_;
   RiseProfile rise_;
   std::vector<Phase> phases_;
+  std::vector<Ride> rides_;
   double duration_s_ = 0;
   WalkState now_;  // at the end of the last phase
 };

@@ -112,6 +112,61 @@ TEST(SceneFileTest, EachBadItemIsNamed) {
   EXPECT_THAT(planComplaint(plan), HasSubstr("T_body_lidar.qxyzw"));
 }
 
+json planWithLift() {
+  json plan = goodPlan();
+  plan["floors"] = {0.0, 3.0};
+  plan["slabs"] = {{{"min", {0, 0}}, {"max", {6, 4}}, {"z", {2.8, 3.0}}}};
+  for (const json& wall : json(plan["walls"])) {
+    plan["walls"].push_back(wall);
+    plan["walls"].back()["z"] = {3.0, 5.5};
+  }
+  plan["doorways"].push_back({{"floor", 1}, {"xyz", {3, 2, 3}}, {"width", 0.95}});
+  plan["lifts"] = {
+      {{"name", "A"}, {"floors", {0, 1}}, {"door", {{3, 1.55}, {3, 2.45}}}, {"door_height", 2.0}}};
+  plan["path"]["waypoints"] = {{1, 2}, {{"xy", {5, 2}}, {"lift", "A"}, {"to_floor", 1}}, {1, 2}};
+  return plan;
+}
+
+TEST(SceneFileTest, LiftsAreReadWithTheRidesOfThePath) {
+  const Scene scene = parseScene(planWithLift().dump(), "plan.json");
+  ASSERT_EQ(scene.lifts.size(), 1u);
+  EXPECT_EQ(scene.lifts[0].floors, (std::vector<int>{0, 1}));
+  EXPECT_EQ(scene.lifts[0].door_b, Eigen::Vector2d(3, 2.45));
+  const auto& points = scene.path.waypoints;
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(points[1].lift, 0);
+  EXPECT_EQ(points[1].ride_m, 3.0);
+  EXPECT_EQ(points[1].ridden_m, 0.0);
+  EXPECT_EQ(points[2].ridden_m, 3.0);
+  EXPECT_EQ(points[2].rise_m, 0.0) << "what feet climb";
+}
+
+TEST(SceneFileTest, EachBadLiftIsNamed) {
+  json plan = planWithLift();
+  plan["lifts"][0]["floors"] = {0};
+  plan["path"]["waypoints"] = {{1, 2}, {5, 2}};
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("lifts[0]"), HasSubstr("two floors")));
+  plan["lifts"][0]["floors"] = {0, 2};
+  EXPECT_THAT(planComplaint(plan), HasSubstr("lifts[0].floors"));
+  plan = planWithLift();
+  plan["lifts"][0]["door"] = {{3, 1}, {3, 1}};
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("lifts[0]"), HasSubstr("width")));
+  plan = planWithLift();
+  plan["doorways"].erase(1);
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("lifts[0]"), HasSubstr("floor 1 has no doorway")));
+  plan = planWithLift();
+  plan["path"]["waypoints"][1]["to_floor"] = 3;
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("waypoints[1]"), HasSubstr("to_floor is 3")));
+  plan["path"]["waypoints"][1]["lift"] = "B";
+  EXPECT_THAT(planComplaint(plan), AllOf(HasSubstr("waypoints[1]"), HasSubstr("'B' is not one")));
+  plan = planWithLift();
+  plan["path"]["waypoints"] = {{1, 2},
+                               {{"xy", {5, 2}}, {"lift", "A"}, {"to_floor", 1}},
+                               {{"xy", {1, 2}}, {"z", 3.0}},
+                               {{"xy", {5, 2}}, {"lift", "A"}, {"to_floor", 0}}};
+  EXPECT_EQ(planComplaint(plan), "");
+}
+
 TEST(SceneFileTest, EachBadPathIsNamed) {
   json plan = goodPlan();
   plan.erase("path");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "common/geometry/degree.h"
@@ -244,6 +245,32 @@ TEST(TrajectoryTest, ConstantTwistIsTheExponential) {
   const SE3 expected = start * se3Exp(0.25 * twist);
   EXPECT_LT(se3Log(expected.inverse() * trajectory.poseAt(Time{5250000})).norm(), 1e-12);
   EXPECT_EQ(trajectory.end().us, 6000000);
+}
+
+TEST(WalkTest, ALiftRaisesTheBodyAndNoFootFeelsIt) {
+  WalkPath path = tour();
+  path.waypoints[2].lift = 0;
+  path.waypoints[2].ride_m = 3.2;
+  for (size_t i = 3; i < path.waypoints.size(); ++i) path.waypoints[i].ridden_m = 3.2;
+  const Trajectory walk = walkAlong(path, Time{0}, 0);
+  ASSERT_EQ(walk.rides().size(), 1u);
+  const Ride& ride = walk.rides().front();
+  EXPECT_NEAR(ride.arrives_s - ride.leaves_s, 3.2 / kRide_mps + kRideStart_s, 1e-12);
+  const auto heights = [&](double s) {
+    return std::array<double, 3>{walk.poseAtOffset(s).translation.z(),
+                                 walk.seenPoseAtOffset(s).translation.z(),
+                                 walk.feltPoseAt(Time{std::llround(s * 1e6)}).translation.z()};
+  };
+  const double body = heights(ride.leaves_s)[2];
+  for (double s = ride.leaves_s; s < ride.arrives_s; s += 0.1) {
+    s = std::round(s * 1e6) * 1e-6;
+    const auto [truth, seen, felt] = heights(s);
+    EXPECT_NEAR(felt, body, 1e-9) << "it stands";
+    EXPECT_NEAR(truth - felt,
+                3.2 * std::clamp((s - ride.leaves_s) / (ride.arrives_s - ride.leaves_s), 0.0, 1.0), 1e-9);
+    EXPECT_NEAR(seen - felt, s < ride.middle_s() ? 0 : 3.2, 1e-9);
+  }
+  EXPECT_NEAR(heights(walk.duration().seconds())[0], path.body_height_m + 3.2, 1e-9);
 }
 
 }  // namespace
