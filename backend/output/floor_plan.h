@@ -17,7 +17,8 @@ inline constexpr double kPlanSliceHigh_m = 2.0;
 // What one storey's plan shows, in map, metres: how much stands above each cell of ground, and the path.
 struct FloorPlan {
   FloorId floor;
-  Raster ink;  // grey: the share of the height slice that holds points
+  bool height_known = true;  // false: only a lift led here
+  Raster ink;                // grey: the share of the height slice that holds points
   struct PathPoint {
     Eigen::Vector2d position_map;
     double time_s = 0;   // since the run's first scan

@@ -188,7 +188,8 @@ class Drawing {
   }
 
   void drawTitle(Canvas& canvas) const {
-    canvas.text({extent_.min.x(), extent_.max.y() + 1.4 * letter_}, "Floor " + plan_.floor.str(),
+    canvas.text({extent_.min.x(), extent_.max.y() + 1.4 * letter_},
+                "Floor " + plan_.floor.str() + (plan_.height_known ? "" : ", height not known"),
                 1.5 * letter_, kText, TextAnchor::kLeft);
     canvas.text({extent_.max.x(), extent_.max.y() + 1.4 * letter_},
                 (plan_.rooms.empty() ? std::string()

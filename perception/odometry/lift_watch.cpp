@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace sgraphs {
 namespace {
@@ -12,6 +13,8 @@ constexpr float kChange_m = 0.3f;    // a direction in which more or less is see
 constexpr int kDoorSectors = 2;      // a door that opens shows in so many at once: 10 degrees
 constexpr size_t kSeenSectors = 65;  // of 72: steel sends little back
 constexpr Duration kBeforeClosing{500000};
+constexpr size_t kStride =
+    5;  // of the returns one in so many is looked at: of all rings, as 16 is no multiple
 
 }  // namespace
 
@@ -20,8 +23,9 @@ LiftWatch::View LiftWatch::viewOf(const LidarScan& scan, const std::vector<int32
   View view{};
   const Eigen::Matrix3f R = T_odom_lidar.matrix3().cast<float>();
   const Eigen::Vector2f from = (T_odom_lidar.translation - anchor_).head<2>().cast<float>();
-  for (const int32_t index : kept) {
-    const Eigen::Vector2f p = (R * scan.points[static_cast<size_t>(index)].position_lidar).head<2>() + from;
+  for (size_t i = 0; i < kept.size(); i += kStride) {
+    const LidarPoint& point = scan.points[static_cast<size_t>(kept[i])];
+    const Eigen::Vector2f p = (R * point.position_lidar).head<2>() + from;
     const float turn = std::atan2(p.y(), p.x()) / (2 * std::numbers::pi_v<float>)+0.5f;
     float& reach = view[std::min(static_cast<size_t>(turn * kSectors), kSectors - 1)];
     reach = std::max(reach, p.norm());
@@ -34,7 +38,8 @@ bool LiftWatch::encloses(const View& view) const {
   const auto seen = std::count_if(view.begin(), view.end(), [](float m) { return m > 0; });
   double area_m2 = 0;
   for (const float m : view) area_m2 += std::numbers::pi / kSectors * m * m;
-  return far < kDoorSectors && seen >= static_cast<long>(kSeenSectors) && area_m2 <= config_.car_area_m2;
+  return far < kDoorSectors && seen >= static_cast<std::ptrdiff_t>(kSeenSectors) &&
+         area_m2 <= config_.car_area_m2;
 }
 
 void LiftWatch::close(Time time, const View& view) {
@@ -54,9 +59,11 @@ LiftWatch::Event LiftWatch::step(const LidarScan& scan, const std::vector<int32_
   if ((T_odom_body.translation - anchor_).norm() > kStanding_m) {
     anchor_ = T_odom_body.translation;
     still_since_ = scan.end;
-    closed_ = shut_in_ = false;
+    closed_ = shut_in_ = looked_ = false;
   }
+  if (scan.end - still_since_ < kBeforeClosing) return Event::kNone;
   const View view = viewOf(scan, kept, T_odom_body * T_body_lidar);
+  const bool came_in = !std::exchange(looked_, true);
   if (!encloses(view)) return open();
   int more = 0, less = 0;
   for (size_t i = 0; i < kSectors; ++i) {
@@ -69,9 +76,9 @@ LiftWatch::Event LiftWatch::step(const LidarScan& scan, const std::vector<int32_
     close(scan.end, view);
     return event;
   }
-  if (!closed_ || less >= kDoorSectors) close(scan.end, view);
-  // A robot that has walked into a closed space came through its door.
-  const bool door_closed = closed_since_ - still_since_ >= kBeforeClosing;
+  // A robot that comes to stand in a closed space has walked in it: no door has closed behind it.
+  if (!closed_ || less >= kDoorSectors) close(came_in ? still_since_ : scan.end, view);
+  const bool door_closed = closed_since_ > still_since_;
   if (shut_in_ || !door_closed || (scan.end - closed_since_).seconds() < config_.closed_s)
     return Event::kNone;
   shut_in_ = true;

@@ -29,7 +29,7 @@ class LiftWatch {
 
   // All but the configuration; see StateArchive.
   void visitState(auto& archive) {
-    archive(anchor_, still_since_, closed_since_, closed_, shut_in_, view_m_);
+    archive(anchor_, still_since_, closed_since_, closed_, shut_in_, looked_, view_m_);
   }
 
  private:
@@ -47,7 +47,8 @@ class LiftWatch {
   Time closed_since_;
   bool closed_ = false;
   bool shut_in_ = false;
-  View view_m_{};  // when it closed
+  bool looked_ = false;  // since it came to stand
+  View view_m_{};        // when it closed
 };
 
 }  // namespace sgraphs
