@@ -59,6 +59,9 @@ struct FloorNode {
   Eigen::Vector2d center_map = Eigen::Vector2d::Zero();
   bool has_height = false;
   double z_m = 0;  // height of the walking surface in map
+  // False: only lifts have led here, and no measurement says how high over the first keyframe's floor it
+  // lies. The map has put it somewhere clear of the others. Known in the output only.
+  bool height_known = true;
 };
 
 // A room, an arm of a corridor. What does not follow from its centre is as it was last observed.

@@ -96,22 +96,6 @@ Eigen::Vector2d meanPosition(const SituationalGraph& graph, FloorId floor) {
 
 }  // namespace
 
-std::map<FloorId, FloorNode> describeFloors(const SituationalGraph& graph, std::span<const MapPoint> map) {
-  std::map<FloorId, FloorNode> floors = graph.floors;
-  for (const auto& [id, node] : graph.keyframes) floors.try_emplace(floorOf(node));
-  if (floors.empty()) floors.try_emplace(FloorId{0});
-  for (auto& [id, floor] : floors) {
-    floor.id = id;
-    if (floor.has_height) continue;
-    floor.center_map = meanPosition(graph, id);
-    const auto height = lowestDominant(heightsBelowPath(graph, map, id));
-    floor.has_height = height.has_value();
-    // On the plane up . p = height, above the storey's centre.
-    if (height) floor.z_m = (*height - graph.up_map.head<2>().dot(floor.center_map)) / graph.up_map.z();
-  }
-  return floors;
-}
-
 std::set<FloorId> floorsOfUnknownHeight(const SituationalGraph& graph) {
   std::set<FloorId> unknown;
   if (graph.keyframes.empty()) return unknown;
@@ -133,6 +117,24 @@ std::set<FloorId> floorsOfUnknownHeight(const SituationalGraph& graph) {
   for (const auto& [id, node] : graph.keyframes) unknown.insert(floorOf(node));
   for (const KeyframeId id : known) unknown.erase(floorOf(graph.keyframes.at(id)));
   return unknown;
+}
+
+std::map<FloorId, FloorNode> describeFloors(const SituationalGraph& graph, std::span<const MapPoint> map) {
+  std::map<FloorId, FloorNode> floors = graph.floors;
+  for (const auto& [id, node] : graph.keyframes) floors.try_emplace(floorOf(node));
+  if (floors.empty()) floors.try_emplace(FloorId{0});
+  const std::set<FloorId> unknown = floorsOfUnknownHeight(graph);
+  for (auto& [id, floor] : floors) {
+    floor.id = id;
+    floor.height_known = !unknown.contains(id);
+    if (floor.has_height) continue;
+    floor.center_map = meanPosition(graph, id);
+    const auto height = lowestDominant(heightsBelowPath(graph, map, id));
+    floor.has_height = height.has_value();
+    // On the plane up . p = height, above the storey's centre.
+    if (height) floor.z_m = (*height - graph.up_map.head<2>().dot(floor.center_map)) / graph.up_map.z();
+  }
+  return floors;
 }
 
 StoreyHeight::StoreyHeight(const SituationalGraph& graph, const FloorNode& floor) : up_(graph.up_map) {

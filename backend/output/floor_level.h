@@ -17,8 +17,7 @@ inline constexpr int kMaxStoreyCells = 100'000'000;
 // the path; has_height stays false where no height stands out.
 std::map<FloorId, FloorNode> describeFloors(const SituationalGraph& graph, std::span<const MapPoint> map);
 
-// Floors to which only lifts have led: no measurement says how high over the first keyframe's they lie. The
-// map has put them somewhere clear of the others.
+// Of these floors those of which FloorNode says that their height is not known.
 std::set<FloorId> floorsOfUnknownHeight(const SituationalGraph& graph);
 
 // Heights along `up_map` over the walking surface: what slices of a storey are cut by, also if the map's z is

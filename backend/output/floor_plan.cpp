@@ -104,7 +104,7 @@ FloorPlan makeFloorPlan(const SituationalGraph& graph, const FloorNode& floor, s
                         std::span<const OdometryEstimate> scans) {
   FloorPlan plan;
   plan.floor = floor.id;
-  plan.height_known = !floorsOfUnknownHeight(graph).contains(floor.id);
+  plan.height_known = floor.height_known;
   plan.walls = wallLines(graph, floor);
   plan.rooms = planRooms(graph, floor.id);
   plan.doors = planDoors(graph, floor.id);

@@ -103,13 +103,12 @@ std::string graphJson(const SituationalGraph& graph, const std::map<FloorId, Flo
   for (const auto& [id, node] : graph.keyframes)
     nodes.push_back(keyframeJson(node, keyframe_covariances, sessions));
   for (const auto& [id, plane] : graph.planes) nodes.push_back(wallJson(plane));
-  const std::set<FloorId> by_lift = floorsOfUnknownHeight(graph);
   for (const auto& [id, floor] : floors)
     nodes.push_back({{"id", id.str()},
                      {"layer", "floors"},
                      {"center", {floor.center_map.x(), floor.center_map.y()}},
                      {"z", floor.has_height ? Json(floor.z_m) : Json(nullptr)},
-                     {"height_known", !by_lift.contains(id)}});
+                     {"height_known", floor.height_known}});
   addUpperLayerNodes(graph, sessions, nodes);
   json["links"] = linksJson(graph);
   addUpperLayerLinks(graph, json["links"]);

@@ -7,6 +7,7 @@ namespace sgraphs {
 namespace {
 
 constexpr size_t kAgreeing = 4;
+constexpr size_t kMostKept = 40;  // of the newest, where a likeness is never decided
 constexpr double kOver_m = 10.0;  // of path between the first and the last of them
 constexpr int kContradicted = 2;  // looks that cannot be of a floor
 constexpr double kDrift_m = 0.5;  // of the path since the ride, sideways
@@ -54,6 +55,7 @@ std::vector<LoopHypothesis> FloorReturn::step(KeyframeId keyframe, const PlaceMe
          path.walkedTo(keyframe) - path.walkedTo(evidence.agreeing.back().loop.to) >=
              0.5 * config_.spacing_m))
       evidence.agreeing.push_back(*h);
+    if (evidence.agreeing.size() > kMostKept) evidence.agreeing.erase(evidence.agreeing.begin());
   }
   for (const auto& [other, evidence] : others_) {
     if (!recognised(other, path)) continue;

@@ -71,6 +71,16 @@ OldSurroundings LoopSearch::surroundingsOf(const Anchor& anchor, const OldPlaces
   return OldSurroundings::ofNearest(std::move(places));
 }
 
+LoopHypothesis LoopSearch::measured(const std::vector<PlacedPlace>& query, const OldSurroundings& around,
+                                    const MeasuredLoop& guess, const WalkedPath& path) const {
+  LoopHypothesis h;
+  h.check = checkLoop(query, around, guess.T_from_to, config_.verification);
+  h.loop = {guess.from, guess.to, h.check.T_anchor_body,
+            h.check.covariance + path.distortionAt(guess.from, kDistortion_m) +
+                path.distortionAt(guess.to, kDistortion_m)};
+  return h;
+}
+
 std::optional<LoopHypothesis> LoopSearch::straightAcross(KeyframeId keyframe, FloorId floor,
                                                          const PlaceMemory& memory,
                                                          const WalkedPath& path) const {
@@ -86,12 +96,8 @@ std::optional<LoopHypothesis> LoopSearch::straightAcross(KeyframeId keyframe, Fl
   const OldSurroundings around = surroundingsOf({nearest->id, nearest->T_map_body, {}}, old, path);
   SE3 T_map_guess = T_map_body;
   T_map_guess.translation.z() = nearest->T_map_body.translation.z();
-  LoopHypothesis h;
-  h.check = checkLoop(queryOf(keyframe, memory, path, config_.verification.query_path_m), around,
-                      nearest->T_map_body.inverse() * T_map_guess, config_.verification);
-  h.loop = {nearest->id, keyframe, h.check.T_anchor_body,
-            h.check.covariance + path.distortionAt(nearest->id, kDistortion_m) +
-                path.distortionAt(keyframe, kDistortion_m)};
+  LoopHypothesis h = measured(queryOf(keyframe, memory, path, config_.verification.query_path_m), around,
+                              {nearest->id, keyframe, nearest->T_map_body.inverse() * T_map_guess}, path);
   const SE3 T_guess_found = T_map_guess.inverse() * nearest->T_map_body * h.check.T_anchor_body;
   h.correction_m = T_guess_found.translation.norm();
   return h;
@@ -133,12 +139,9 @@ LoopVerdict LoopSearch::step(KeyframeId keyframe, const PlaceMemory& memory, con
     const SE3 T_map_guess(
         so3Exp({0, 0, match.yaw_rad}) * T_map_body.rotation,
         {match.position_map.x(), match.position_map.y(), anchor->T_map_body.translation.z()});
-    LoopHypothesis h;
-    h.check = checkLoop(query, it->second, anchor->T_map_body.inverse() * T_map_guess, config_.verification);
+    LoopHypothesis h =
+        measured(query, it->second, {anchor->id, keyframe, anchor->T_map_body.inverse() * T_map_guess}, path);
     ++verdict.registrations;
-    h.loop = {anchor->id, keyframe, h.check.T_anchor_body,
-              h.check.covariance + path.distortionAt(anchor->id, kDistortion_m) +
-                  path.distortionAt(keyframe, kDistortion_m)};
     const SE3 T_map_found = anchor->T_map_body * h.check.T_anchor_body;
     h.correction_m = (T_map_found.translation - T_map_body.translation).norm();
     h.gate_m = anchor->gate.radius_m;

@@ -58,6 +58,9 @@ class LoopSearch {
   OldPlaces oldPlaces(KeyframeId keyframe, const PlaceMemory& memory, const WalkedPath& path) const;
   Anchors anchorsOf(KeyframeId keyframe, const OldPlaces& old, const PlaceMemory& memory,
                     const WalkedPath& path) const;
+  // What is seen from `guess.to` (the query), registered against the surroundings of `guess.from`.
+  LoopHypothesis measured(const std::vector<PlacedPlace>& query, const OldSurroundings& around,
+                          const MeasuredLoop& guess, const WalkedPath& path) const;
   OldSurroundings surroundingsOf(const Anchor& anchor, const OldPlaces& old, const WalkedPath& path) const;
 
   LoopsConfig config_;

@@ -105,7 +105,7 @@ void StoreyTracker::uniteStoreys() {
       continue;
     }
     if (current_ == newer->first) current_ = older->first;
-    for (const auto& [keyframe, floor] : std::map(floors_))
+    for (const auto& [keyframe, floor] : floors_)
       if (floor == newer->first) assign(keyframe, older->first);
     newer = heights_.erase(newer);
   }

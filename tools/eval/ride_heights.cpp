@@ -18,12 +18,6 @@ bool jumps(const StampedPose& before, const StampedPose& after) {
   return std::abs(after.pose.translation.z() - before.pose.translation.z()) > kJump_m;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 RideHeights::RideHeights(const std::vector<StampedPose>& estimate, const std::vector<StampedPose>& truth) {
@@ -62,7 +56,8 @@ void RideHeights::findLevels(const std::vector<StampedPose>& estimate,
   }
   // Where the estimate's frame lies is the alignment's matter: the first level stays.
   for (size_t i = 0; i < levels_.size(); ++i)
-    if (!off[i].empty() && !off.front().empty()) levels_[i].shift_m = median(off[i]) - median(off.front());
+    if (!off[i].empty() && !off.front().empty())
+      levels_[i].shift_m = statisticsOf(off[i]).median - statisticsOf(off.front()).median;
 }
 
 double RideHeights::shiftAt(double z_m) const {
@@ -78,7 +73,7 @@ double RideHeights::shiftAt(double z_m) const {
 
 void RideHeights::findRides(const std::vector<StampedPose>& estimate, const std::vector<StampedPose>& truth) {
   std::vector<StampedPose> poses = estimate;
-  for (StampedPose& p : poses) p.pose.translation.z() += shiftAt(p.pose.translation.z());
+  correct(poses);
   const auto offAt = [&](const StampedPose& p) -> std::optional<double> {
     const auto there = poseAt(truth, p.time);
     return there ? std::optional(there->translation.z() - p.pose.translation.z()) : std::nullopt;

@@ -46,7 +46,9 @@ class SensorSimulator {
   LidarScan scan(int64_t index) const;
 
   // T_building_lidar at an instant, to put points where they were measured.
-  SE3 lidarPoseAt(Time time) const { return trajectory_.poseAt(time) * T_body_lidar_; }
+  SE3 lidarPoseAt(Time time) const {
+    return trajectory_.seenPoseAtOffset((time - trajectory_.start()).seconds()) * T_body_lidar_;
+  }
 
  private:
   struct Return {
