@@ -1,57 +1,118 @@
 #include "backend/output/moved_away.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
-#include "backend/graph/map_plane.h"
-#include "perception/free_space/free_space_evidence.h"
+#include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
 namespace {
 
 constexpr int kMinPasses = 3;
 constexpr int kPassesPerHit = 3;
-// Rays that leave the highest slice upwards pass walls that go on above it.
+// People end below the second highest slice. Rays that leave the highest one upwards pass walls that go on
+// above it, so that one says nothing.
+constexpr double kTallSlice_m = 0.25;
 constexpr int kNumSure = kNumSlices - 1;
+// Whom the robot meets is a plane for two or three keyframes; a pane that it walks past is one for more.
+constexpr int64_t kFewObservations = 3;
+constexpr double kSample_m = 0.1;
+constexpr int kMinSamples = 5;
 
 // What all keyframes say of free space, from where they stand now.
-FreeSpaceEvidence evidenceOf(const SituationalGraph& graph, const EvidenceConfig& config) {
-  FreeSpaceEvidence evidence(config);
-  bool first = true;
+FreeSpaceEvidence evidenceOf(const SituationalGraph& graph) {
+  FreeSpaceEvidence evidence(EvidenceConfig{}, kTallSlice_m);
   for (const auto& [id, node] : graph.keyframes) {
     if (!node.keyframe) continue;
     MapUpdate update;
     update.newest = id;
     update.keyframes = {{id, floorOf(node), node.time, node.T_map_body}};
-    if (first)
-      for (const auto& [plane_id, plane] : graph.planes) update.planes.push_back(mapPlane(plane));
-    first = false;
     evidence.take(*node.keyframe, update);
   }
   return evidence;
 }
 
-bool movedAway(const MapPoint& point, const StoreyMap& storey, double cell_m) {
-  const double height_m = static_cast<double>(point.position_map.z()) - storey.surface_z_m();
-  const int slice = static_cast<int>(std::floor((height_m - kLowestSlice_m) / kSlice_m));
-  if (slice < 0 || slice >= kNumSure) return false;
-  const auto cellOf = [cell_m](float p) {
-    return static_cast<int>(std::floor(static_cast<double>(p) / cell_m));
+std::set<PlaneId> wallsOfRooms(const SituationalGraph& graph) {
+  std::set<PlaneId> walls;
+  for (const auto& [id, room] : graph.rooms)
+    for (const PlaneId wall : room.seen.walls()) walls.insert(wall);
+  for (const CenterWallsFactor& factor : graph.center_walls) walls.insert({factor.a, factor.b});
+  for (const RoomShapeFactor& factor : graph.room_shapes) walls.insert({factor.a, factor.b});
+  return walls;
+}
+
+// Places on the plane within its polygon, kSample_m apart.
+std::vector<Eigen::Vector3d> samplesOf(const PlaneNode& plane) {
+  const auto axes = tangentBasis(plane.normal_map);
+  std::vector<Eigen::Vector2d> outline;
+  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = low;
+  for (const Eigen::Vector3d& corner : plane.polygon_map) {
+    outline.emplace_back(axes.transpose() * (corner - plane.centroid_map));
+    low = low.cwiseMin(outline.back());
+    high = high.cwiseMax(outline.back());
+  }
+  const auto inside = [&](const Eigen::Vector2d& p) {  // of a convex outline, counter-clockwise
+    for (size_t i = 0; i < outline.size(); ++i) {
+      const Eigen::Vector2d a = outline[i], side = outline[(i + 1) % outline.size()] - a, to = p - a;
+      if (side.x() * to.y() - side.y() * to.x() < 0) return false;
+    }
+    return true;
   };
-  const ColumnVotes votes =
-      storey.evidence().at(cellOf(point.position_map.x()), cellOf(point.position_map.y()));
-  const int hits = votes.hits[static_cast<size_t>(slice)], passes = votes.misses[static_cast<size_t>(slice)];
-  return votes.walls == 0 && passes >= kMinPasses && passes > kPassesPerHit * hits;
+  std::vector<Eigen::Vector3d> samples;
+  for (double u = low.x(); u <= high.x(); u += kSample_m)
+    for (double v = low.y(); v <= high.y(); v += kSample_m)
+      if (inside({u, v})) samples.push_back(plane.centroid_map + axes * Eigen::Vector2d(u, v));
+  return samples;
 }
 
 }  // namespace
 
-void dropWhatMovedAway(const SituationalGraph& graph, std::vector<MapPoint>& map) {
-  const EvidenceConfig config;
-  const FreeSpaceEvidence evidence = evidenceOf(graph, config);
+MovedAway::MovedAway(const SituationalGraph& graph) : evidence_(evidenceOf(graph)) {}
+
+MovedAway::Place MovedAway::at(const Eigen::Vector3d& p_map, FloorId floor) const {
+  const auto storey = evidence_.storeys().find(floor);
+  if (storey == evidence_.storeys().end()) return Place::kUnknown;
+  const double height_m = p_map.z() - storey->second.surface_z_m();
+  const int slice = static_cast<int>(std::floor((height_m - kLowestSlice_m) / kTallSlice_m));
+  if (slice < 0 || slice >= kNumSure) return Place::kUnknown;
+  const double cell_m = EvidenceConfig{}.cell_m;
+  const ColumnVotes votes = storey->second.evidence().at(static_cast<int>(std::floor(p_map.x() / cell_m)),
+                                                         static_cast<int>(std::floor(p_map.y() / cell_m)));
+  const int hits = votes.hits[static_cast<size_t>(slice)], passes = votes.misses[static_cast<size_t>(slice)];
+  if (hits + passes == 0) return Place::kUnknown;
+  return passes >= kMinPasses && passes > kPassesPerHit * hits ? Place::kMovedAway : Place::kStands;
+}
+
+void MovedAway::dropFrom(std::vector<MapPoint>& map) const {
   std::erase_if(map, [&](const MapPoint& point) {
-    const auto storey = evidence.storeys().find(point.floor);
-    return storey != evidence.storeys().end() && movedAway(point, storey->second, config.cell_m);
+    return at(point.position_map.cast<double>(), point.floor) == Place::kMovedAway;
   });
+}
+
+bool MovedAway::walkedPast(const PlaneNode& plane) const {
+  if (plane.label == PlaneLabel::kHorizontal || plane.num_observations > kFewObservations) return false;
+  int gone = 0, known = 0;
+  for (const Eigen::Vector3d& p : samplesOf(plane)) {
+    const Place place = at(p, plane.floor);
+    known += place != Place::kUnknown;
+    gone += place == Place::kMovedAway;
+  }
+  return known >= kMinSamples && 2 * gone > known;
+}
+
+SituationalGraph MovedAway::withoutWhoWalkedPast(const SituationalGraph& graph) const {
+  SituationalGraph rest = graph;
+  const std::set<PlaneId> needed = wallsOfRooms(graph);
+  std::erase_if(rest.planes, [&](const auto& node) {
+    return !needed.contains(node.first) && walkedPast(node.second);
+  });
+  const auto went = [&](PlaneId id) { return graph.planes.contains(id) && !rest.planes.contains(id); };
+  std::erase_if(rest.merged_planes, [&](const auto& merge) { return went(livingPlane(graph, merge.first)); });
+  std::erase_if(rest.observations, [&](const ObservationFactor& f) { return went(f.plane); });
+  std::erase_if(rest.plane_ups, [&](const PlaneUpFactor& f) { return went(f.plane); });
+  std::erase_if(rest.faces, [&](const FacesFactor& f) { return went(f.a) || went(f.b); });
+  return rest;
 }
 
 }  // namespace sgraphs

@@ -31,13 +31,13 @@ void writeMap(const std::vector<MapPoint>& map, const std::string& path) {
   writePlyPoints(path, cloud);
 }
 
-void writeStorey(const RunRecord& record, const FloorNode& floor, const std::vector<MapPoint>& map,
-                 const std::string& out_dir) {
+void writeStorey(const SituationalGraph& graph, const std::vector<OdometryEstimate>& scans,
+                 const FloorNode& floor, const std::vector<MapPoint>& map, const std::string& out_dir) {
   const std::string name = floor.id.str();
-  const FloorPlan plan = makeFloorPlan(*record.graph, floor, map, record.scans);
+  const FloorPlan plan = makeFloorPlan(graph, floor, map, scans);
   writeFile(out_dir + "/floorplan_" + name + ".svg", floorPlanSvg(plan));
   writeFile(out_dir + "/floorplan_" + name + ".png", floorPlanPng(plan));
-  const OccupancyGrid grid = buildOccupancy(*record.graph, floor, kOccupancyCell_m);
+  const OccupancyGrid grid = buildOccupancy(graph, floor, kOccupancyCell_m);
   if (grid.cells.empty()) return;  // nothing was seen in the band: map_server refuses an empty image
   const std::string image = "occupancy_" + name + ".pgm";
   writeFile(out_dir + "/" + image, occupancyPgm(grid));
@@ -66,12 +66,13 @@ void writeTrajectories(const RunRecord& record, const std::string& out_dir) {
 
 void writeOutputs(const RunRecord& record, const std::string& out_dir) {
   if (!record.graph) throw std::logic_error("writeOutputs: the record has no graph");
-  const SituationalGraph& graph = *record.graph;
   createFolder(out_dir);
   writeTrajectories(record, out_dir);
 
+  const MovedAway moved_away(*record.graph);
+  const SituationalGraph graph = moved_away.withoutWhoWalkedPast(*record.graph);
   std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
-  dropWhatMovedAway(graph, map);
+  moved_away.dropFrom(map);
   const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);
   writeMap(map, out_dir + "/map.ply");
   writeFile(out_dir + "/graph.json",
@@ -79,7 +80,7 @@ void writeOutputs(const RunRecord& record, const std::string& out_dir) {
                       record.continued ? record.continued->sessions : std::vector<SessionClock>()));
   writeFile(out_dir + "/graph.g2o", graphG2o(graph));
   if (!graph.keyframes.empty())
-    for (const auto& [id, floor] : floors) writeStorey(record, floor, map, out_dir);
+    for (const auto& [id, floor] : floors) writeStorey(graph, record.scans, floor, map, out_dir);
   // Last: its presence says that the folder is complete.
   writeFile(out_dir + "/summary.json", summaryJson(record));
 }

@@ -10,10 +10,10 @@ constexpr double kFar_m = 8.0;  // where a turn of the keyframe is felt: most ra
 
 }  // namespace
 
-FreeSpaceEvidence::FreeSpaceEvidence(const EvidenceConfig& config)
+FreeSpaceEvidence::FreeSpaceEvidence(const EvidenceConfig& config, double slice_m)
     : config_(config),
       thinner_(config.cell_m, config.max_range_m),
-      caster_(config.cell_m, config.max_range_m) {}
+      caster_(config.cell_m, config.max_range_m, slice_m) {}
 
 StoreyMap& FreeSpaceEvidence::storey(FloorId floor) {
   return storeys_.try_emplace(floor, floor, config_).first->second;

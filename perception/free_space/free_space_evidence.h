@@ -18,7 +18,7 @@ namespace sgraphs {
 // Free space of all storeys, tied to the keyframes: what a keyframe contributed moves with it.
 class FreeSpaceEvidence {
  public:
-  explicit FreeSpaceEvidence(const EvidenceConfig& config);
+  explicit FreeSpaceEvidence(const EvidenceConfig& config, double slice_m = kSlice_m);
 
   // Takes the round's keyframe, if it had one, and what its map changed; the storeys whose grids changed.
   std::vector<FloorId> step(const std::optional<Keyframe>& keyframe, const MapUpdate& update);

@@ -14,7 +14,8 @@ constexpr float kHuge = 1e30f;
 
 }  // namespace
 
-RayCaster::RayCaster(double cell_m, double max_range_m) : cell_m_(cell_m) {
+RayCaster::RayCaster(double cell_m, double max_range_m, double slice_m)
+    : cell_m_(cell_m), slice_m_(slice_m) {
   view_.size = 2 * static_cast<int>(std::ceil((max_range_m + kViewMargin_m) / cell_m));
 }
 
@@ -31,8 +32,8 @@ const KeyframeView& RayCaster::cast(const KeyframeRays& rays, const SE3& T_map_b
   view_.x0 = static_cast<int>(std::floor(T_map_body.translation.x() / cell_m_)) - view_.size / 2;
   view_.y0 = static_cast<int>(std::floor(T_map_body.translation.y() / cell_m_)) - view_.size / 2;
   // From body [m] to window cells and slices, in float: the window is small.
-  const Eigen::Vector3d scale(1 / cell_m_, 1 / cell_m_, 1 / kSlice_m);
-  const Eigen::Vector3d shift(view_.x0, view_.y0, (surface_z_m + kLowestSlice_m) / kSlice_m);
+  const Eigen::Vector3d scale(1 / cell_m_, 1 / cell_m_, 1 / slice_m_);
+  const Eigen::Vector3d shift(view_.x0, view_.y0, (surface_z_m + kLowestSlice_m) / slice_m_);
   const Eigen::Matrix3f R = (scale.asDiagonal() * T_map_body.matrix3()).cast<float>();
   const Eigen::Vector3f t = (scale.cwiseProduct(T_map_body.translation) - shift).cast<float>();
   std::vector<Eigen::Vector3f> viewpoints;

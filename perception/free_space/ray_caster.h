@@ -9,8 +9,8 @@
 
 namespace sgraphs {
 
-// Slices of height over the walking surface that every column has: from 0.1 m, where floors and their noise
-// end, to 1.9 m, below the lintels of doors.
+// Slices of height over the walking surface that every column has, from 0.1 m, where floors and their noise
+// end. Where nothing else is said to 1.9 m, below the lintels of doors.
 constexpr int kNumSlices = 9;
 constexpr double kSlice_m = 0.2;
 constexpr double kLowestSlice_m = 0.1;
@@ -29,7 +29,7 @@ struct KeyframeView {
 // Casts a keyframe's rays from a pose. The same rays from the same pose give the same view, bit by bit.
 class RayCaster {
  public:
-  RayCaster(double cell_m, double max_range_m);
+  RayCaster(double cell_m, double max_range_m, double slice_m = kSlice_m);
 
   // Valid until the next call.
   const KeyframeView& cast(const KeyframeRays& rays, const SE3& T_map_body, double surface_z_m);
@@ -41,7 +41,7 @@ class RayCaster {
   void markWalked(const Eigen::Vector3f& at);
   bool inside(const Eigen::Vector3f& p) const;
 
-  double cell_m_;
+  double cell_m_, slice_m_;
   KeyframeView view_;
 };
 

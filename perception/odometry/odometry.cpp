@@ -228,19 +228,25 @@ class Odometry::Impl {
   // lets scans bend: in a corridor the left wall is always seen at one time of the sweep and the right one at
   // another, so that the map agrees with any bend it was built with, until the robot turns round. Along a
   // corridor the end is hardly known; there the legs, if there are any, say the motion from it on.
+  //
+  // Nor may the begin be held tighter than it is known. What is seen at the share s of a sweep only (a floor
+  // ahead that tells the pitch) puts the end at (seen - (1 - s) begin) / s: where the begin does not give way,
+  // its error grows by (1 - s) / s from scan to scan, with alternating sign, until the robot nods by degrees.
   Matrix6d beginInformation(bool has_legs) const {
     const RegistrationConfig& c = config_.registration;
     // After a silence the begin of the scan is a guess.
     const double gap_s = std::max(0.0, gap_.seconds() - 0.005);
     const Matrix6d loose =
         diagonalInformation(c.begin_sigma_m + 0.5 * gap_s, c.begin_sigma_rad + 0.5 * gap_s);
-    if (gap_s > 0 || registered_in_a_row_ < kSettled) return loose;
+    if (gap_s > 0 || registered_in_a_row_ < kSettled)
+      return (Matrix6d(loose.inverse()) + previous_registered_covariance_).inverse();
     Vector6d seam;
     seam << c.seam_sigma_m, c.seam_sigma_m, c.seam_vertical_sigma_m,
         Eigen::Vector3d::Constant(c.seam_sigma_rad);
     Matrix6d covariance = previous_registered_covariance_;
     covariance.diagonal() += seam.cwiseAbs2();
-    const Matrix6d weak = has_legs ? loose : diagonalInformation(c.seam_weak_sigma_m, c.begin_sigma_rad);
+    const Matrix6d weak =
+        has_legs ? loose : diagonalInformation(c.seam_weak_sigma_m, c.seam_weak_sigma_rad);
     return weak + covariance.inverse();
   }
 

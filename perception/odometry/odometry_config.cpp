@@ -60,6 +60,7 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
   v.field("seam_sigma_rad", seam_sigma_rad, 1e-6, 1.0, "The same, of the rotation");
   v.field("seam_weak_sigma_m", seam_weak_sigma_m, 1e-5, 1.0,
           "Lidar mode: within this in directions in which the end is hardly known");
+  v.field("seam_weak_sigma_rad", seam_weak_sigma_rad, 1e-5, 1.0, "The same of its attitude");
 }
 
 void LegsConfig::visit(ConfigVisitor& v) {

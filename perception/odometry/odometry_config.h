@@ -51,6 +51,7 @@ struct RegistrationConfig {
   double seam_vertical_sigma_m = 0.005;
   double seam_sigma_rad = 0.0001;
   double seam_weak_sigma_m = 0.015;
+  double seam_weak_sigma_rad = 0.003;
 
   void visit(ConfigVisitor& v);
 };

@@ -22,7 +22,7 @@ std::shared_ptr<const Keyframe> viewFrom(int64_t id, double x, bool visitor) {
         {{static_cast<float>(px - x), static_cast<float>(py), static_cast<float>(height - kBody_m)}, 0, 1});
   };
   for (double along = -2.95; along < 2.95; along += 0.05) {
-    for (double height = 0.05; height < 2; height += 0.05) {
+    for (double height = 0.05; height < 4; height += 0.05) {
       add(along, 2.96, height);
       add(along, -2.96, height);
       add(2.96, along, height);
@@ -30,7 +30,7 @@ std::shared_ptr<const Keyframe> viewFrom(int64_t id, double x, bool visitor) {
     }
     for (double y = -2.95; y < 2.95; y += 0.05) add(along, y, 0);
   }
-  for (double height = 0.2; height < 1.8; height += 0.05) {
+  for (double height = 0.2; height < 1.95; height += 0.05) {
     for (double across = -0.2; visitor && across < 0.2; across += 0.04) add(1.5 + across, 0.96, height);
     add(-1.5, 1, height);
   }
@@ -53,10 +53,10 @@ SituationalGraph roomSeenBy(int keyframes, int visits) {
   return graph;
 }
 
-size_t countNear(const std::vector<MapPoint>& map, const Eigen::Vector2f& place) {
+size_t countNear(const std::vector<MapPoint>& map, const Eigen::Vector2f& place, float from_z = -0.35F) {
   size_t count = 0;
   for (const MapPoint& p : map)
-    count += (p.position_map.head<2>() - place).norm() < 0.3F && p.position_map.z() > -0.35F;
+    count += (p.position_map.head<2>() - place).norm() < 0.3F && p.position_map.z() > from_z;
   return count;
 }
 
@@ -66,8 +66,9 @@ TEST(MovedAwayTest, WhoStoodThereOnceIsGoneAndWhatStandsStays) {
   const size_t visitor = countNear(map, {1.5F, 1}), post = countNear(map, {-1.5F, 1}), all = map.size();
   ASSERT_GT(visitor, 200u);
   ASSERT_GT(post, 25u);
-  dropWhatMovedAway(graph, map);
+  MovedAway(graph).dropFrom(map);
   EXPECT_LT(countNear(map, {1.5F, 1}), visitor / 4);
+  EXPECT_EQ(countNear(map, {1.5F, 1}, 1.25F), 0u) << "a head at 1.75 m and more";
   EXPECT_EQ(countNear(map, {-1.5F, 1}), post) << "thin, but there every time";
   EXPECT_GT(map.size(), all - visitor - all / 200) << "walls and floor stay";
 }
@@ -76,7 +77,7 @@ TEST(MovedAwayTest, WhoStoodThereMostOfTheTimeStays) {
   const SituationalGraph graph = roomSeenBy(8, 5);
   std::vector<MapPoint> map = buildMap(graph, 0.05);
   const size_t visitor = countNear(map, {1.5F, 1});
-  dropWhatMovedAway(graph, map);
+  MovedAway(graph).dropFrom(map);
   EXPECT_GT(countNear(map, {1.5F, 1}), 8 * visitor / 10);
 }
 
@@ -84,8 +85,53 @@ TEST(MovedAwayTest, TwoLooksAreNotEnoughToCallSomethingGone) {
   const SituationalGraph graph = roomSeenBy(3, 1);
   std::vector<MapPoint> map = buildMap(graph, 0.05);
   const size_t visitor = countNear(map, {1.5F, 1});
-  dropWhatMovedAway(graph, map);
+  MovedAway(graph).dropFrom(map);
   EXPECT_GT(countNear(map, {1.5F, 1}), 8 * visitor / 10);
+}
+
+// A wall face in the plane y = y_m that looks at the robot, of `observations` keyframes.
+PlaneNode faceAt(int64_t id, double x_m, double y_m, double half_width_m, int64_t observations) {
+  PlaneNode plane;
+  plane.id = {id};
+  plane.floor = {0};
+  plane.label = PlaneLabel::kY;
+  plane.normal_map = -Eigen::Vector3d::UnitY();
+  plane.centroid_map = plane.anchor_map = {x_m, y_m, 0.5};
+  plane.num_observations = observations;
+  for (const auto& [across, up] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+    plane.polygon_map.emplace_back(x_m + across * half_width_m, y_m, 0.5 + 0.6 * up);
+  return plane;
+}
+
+SituationalGraph withFaces(SituationalGraph graph, const std::vector<PlaneNode>& faces) {
+  int64_t factor = 0;
+  for (const PlaneNode& face : faces) {
+    graph.planes[face.id] = face;
+    graph.observations.push_back({factor++, {0}, face.id, {}});
+    graph.plane_ups.push_back({factor++, face.id, false, 0.01});
+  }
+  return graph;
+}
+
+TEST(MovedAwayTest, AWallThatWasSomebodyGoesWithAllThatNamesIt) {
+  const SituationalGraph graph =
+      withFaces(roomSeenBy(8, 1), {faceAt(1, 1.5, 0.96, 0.2, 1), faceAt(2, 0.0, 2.96, 2.5, 2)});
+  const SituationalGraph rest = MovedAway(graph).withoutWhoWalkedPast(graph);
+  EXPECT_FALSE(rest.planes.contains({1}));
+  EXPECT_TRUE(rest.planes.contains({2})) << "seen as rarely, but it stands";
+  EXPECT_EQ(rest.observations.size(), 1u);
+  EXPECT_EQ(rest.plane_ups.size(), 1u);
+  EXPECT_NO_THROW(rest.check());
+}
+
+TEST(MovedAwayTest, AWallSeenFromManyPlacesOrOfARoomStays) {
+  SituationalGraph graph =
+      withFaces(roomSeenBy(8, 1), {faceAt(1, 1.5, 0.96, 0.2, 4), faceAt(2, 1.5, 0.96, 0.2, 1)});
+  graph.rooms[{7}].id = {7};
+  graph.rooms[{7}].seen.pairs = {{{2}, {1}}};
+  const SituationalGraph rest = MovedAway(graph).withoutWhoWalkedPast(graph);
+  EXPECT_TRUE(rest.planes.contains({1})) << "a pane lets rays pass, too";
+  EXPECT_TRUE(rest.planes.contains({2}));
 }
 
 }  // namespace
