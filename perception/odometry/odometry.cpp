@@ -238,8 +238,12 @@ class Odometry::Impl {
     const double gap_s = std::max(0.0, gap_.seconds() - 0.005);
     const Matrix6d loose =
         diagonalInformation(c.begin_sigma_m + 0.5 * gap_s, c.begin_sigma_rad + 0.5 * gap_s);
-    if (gap_s > 0 || registered_in_a_row_ < kSettled)
-      return (Matrix6d(loose.inverse()) + previous_registered_covariance_).inverse();
+    if (gap_s > 0 || registered_in_a_row_ < kSettled) {
+      if (has_legs) return loose;
+      Matrix6d covariance = loose.inverse();
+      covariance.bottomRightCorner<3, 3>() += previous_registered_covariance_.bottomRightCorner<3, 3>();
+      return covariance.inverse();
+    }
     Vector6d seam;
     seam << c.seam_sigma_m, c.seam_sigma_m, c.seam_vertical_sigma_m,
         Eigen::Vector3d::Constant(c.seam_sigma_rad);

@@ -34,6 +34,8 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
           "Largest angle between the normals of a match");
   v.field("sigma_floor_m", sigma_floor_m, 0.0005, 0.1,
           "Error of the surface model that averaging does not reduce");
+  v.field("cell_sigma_m", cell_sigma_m, 0.0, 0.1,
+          "Error of a cell's plane, which all patches that are matched to it have in common");
   v.field("robust_width", robust_width, 0.5, 20.0,
           "Width of the Cauchy kernel in standard deviations; on upright surfaces only at first");
   v.field("robust_width_upright", robust_width_upright, 0.5, 20.0,
@@ -60,7 +62,7 @@ void RegistrationConfig::visit(ConfigVisitor& v) {
   v.field("seam_sigma_rad", seam_sigma_rad, 1e-6, 1.0, "The same, of the rotation");
   v.field("seam_weak_sigma_m", seam_weak_sigma_m, 1e-5, 1.0,
           "Lidar mode: within this in directions in which the end is hardly known");
-  v.field("seam_weak_sigma_rad", seam_weak_sigma_rad, 1e-5, 1.0, "The same of its attitude");
+  v.field("seam_weak_sigma_rad", seam_weak_sigma_rad, 1e-5, 1.0, "The same, of the rotation");
 }
 
 void LegsConfig::visit(ConfigVisitor& v) {

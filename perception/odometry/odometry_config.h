@@ -36,6 +36,7 @@ struct RegistrationConfig {
   double gate_m = 0.30;
   double max_normal_angle_rad = 0.7;
   double sigma_floor_m = 0.006;
+  double cell_sigma_m = 0.003;
   double robust_width = 3.0;
   double robust_width_upright = 1.5;
   int max_iterations = 12;

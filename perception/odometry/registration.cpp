@@ -158,7 +158,7 @@ std::vector<double> balance(const std::vector<Surfel>& surfels, const ScanMotion
     votes[i] = {cell, 1.0 / (s.variance_m2 + cell->variance_m2 + floor2)};
   };
   forEach(surfels.size(), threads, find);
-  return balanceVotes(votes);
+  return balanceVotes(votes, config.cell_sigma_m);
 }
 
 Sums sumPatches(const std::vector<Surfel>& surfels, const std::vector<double>& factors,

@@ -86,7 +86,7 @@ bool cutStrongest(const std::vector<CellVote>& centres, std::vector<CellVote>& c
 
 }  // namespace
 
-std::vector<double> balanceVotes(const std::vector<PatchVote>& votes) {
+std::vector<double> balanceVotes(const std::vector<PatchVote>& votes, double cell_sigma_m) {
   const Eigen::Matrix2d directions = principalDirections(votes);
   const Met met = cellsOf(votes);
   std::vector<double> factors(votes.size(), 1.0);
@@ -103,6 +103,12 @@ std::vector<double> balanceVotes(const std::vector<PatchVote>& votes) {
     for (size_t i = 0; i < votes.size(); ++i)
       if (votes[i].cell) factors[i] = std::min(factors[i], cells[met.of_vote[i]].factor);
   }
+  std::vector<double> weights(met.cells.size(), 0.0);
+  for (size_t i = 0; i < votes.size(); ++i)
+    if (votes[i].cell) weights[met.of_vote[i]] += votes[i].weight;
+  // n patches of weight w on one cell: 1 / (1 / (n w) + cell_sigma^2), in equal shares.
+  for (size_t i = 0; i < votes.size(); ++i)
+    if (votes[i].cell) factors[i] /= 1.0 + cell_sigma_m * cell_sigma_m * weights[met.of_vote[i]];
   return factors;
 }
 

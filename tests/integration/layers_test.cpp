@@ -80,10 +80,12 @@ TEST_P(LayersTest, WallsRoomsAndDoorwaysAreThoseOfThePlanAndCovariancesAreTrue) 
   EXPECT_EQ(eval["floors"]["recall"], 1.0);
   EXPECT_LT(std::abs(eval["floors"]["storeys"][0]["height_error_m"].get<double>()), 0.01);
 
-  // Right are 3 and 3; errors of one run are alike from keyframe to keyframe, so that its mean scatters.
+  // Right are 3 and 3; errors of one run are alike from keyframe to keyframe, so that its mean scatters. And
+  // the odometry says three times its variance, for what is alike in it from scan to scan: on stairs that is
+  // needed (two_storeys: 4.8; 17.7 without), in an office it is too much.
   const Json& nees = eval["nees_of_estimates"];
   for (const char* part : {"pose_translation", "pose_rotation"}) {
-    EXPECT_GT(nees[part]["mean"].get<double>(), 0.8) << part;
+    EXPECT_GT(nees[part]["mean"].get<double>(), 0.6) << part;
     EXPECT_LT(nees[part]["mean"].get<double>(), 6.0) << part;
   }
   // Conservative: all planes hang on the first keyframe, which stands still and is better than its

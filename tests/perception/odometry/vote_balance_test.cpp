@@ -47,7 +47,7 @@ struct Corridor {
 
 TEST(VoteBalanceTest, SomebodyCloseByIsCutToAShareOfTheRest) {
   const Corridor corridor(20, 150);
-  const std::vector<double> factors = balanceVotes(corridor.votes);
+  const std::vector<double> factors = balanceVotes(corridor.votes, 0.0);
   const double person = corridor.along(factors, corridor.person),
                rest = corridor.along(factors, corridor.ends);
   EXPECT_LT(person, 0.31 * rest);
@@ -57,19 +57,19 @@ TEST(VoteBalanceTest, SomebodyCloseByIsCutToAShareOfTheRest) {
 
 TEST(VoteBalanceTest, WhereManyThingsSpeakNothingIsCut) {
   const Corridor corridor(20, 3);
-  for (const double factor : balanceVotes(corridor.votes)) EXPECT_EQ(factor, 1.0);
+  for (const double factor : balanceVotes(corridor.votes, 0.0)) EXPECT_EQ(factor, 1.0);
 }
 
 TEST(VoteBalanceTest, TheOnlyThingThatSpeaksIsHeard) {
   const Corridor corridor(0, 150);
-  for (const double factor : balanceVotes(corridor.votes)) EXPECT_EQ(factor, 1.0);
+  for (const double factor : balanceVotes(corridor.votes, 0.0)) EXPECT_EQ(factor, 1.0);
 }
 
 TEST(VoteBalanceTest, TheOrderOfTheVotesDoesNotMatter) {
   Corridor corridor(20, 150);
-  const std::vector<double> before = balanceVotes(corridor.votes);
+  const std::vector<double> before = balanceVotes(corridor.votes, 0.0);
   std::reverse(corridor.votes.begin(), corridor.votes.end());
-  std::vector<double> after = balanceVotes(corridor.votes);
+  std::vector<double> after = balanceVotes(corridor.votes, 0.0);
   std::reverse(after.begin(), after.end());
   ASSERT_EQ(after.size(), before.size());
   for (size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(after[i], before[i], 1e-12);
@@ -78,9 +78,23 @@ TEST(VoteBalanceTest, TheOrderOfTheVotesDoesNotMatter) {
 TEST(VoteBalanceTest, PatchesThatMeetNothingAreLeftAlone) {
   Corridor corridor(20, 150);
   corridor.votes.push_back({});
-  EXPECT_EQ(balanceVotes(corridor.votes).back(), 1.0);
-  EXPECT_TRUE(balanceVotes({}).empty());
-  EXPECT_EQ(balanceVotes({PatchVote{}}), std::vector<double>{1.0});
+  EXPECT_EQ(balanceVotes(corridor.votes, 0.0).back(), 1.0);
+  EXPECT_TRUE(balanceVotes({}, 0.0).empty());
+  EXPECT_EQ(balanceVotes({PatchVote{}}, 0.003), std::vector<double>{1.0});
+}
+
+TEST(VoteBalanceTest, WhatIsWrongWithACellDoesNotAverageOut) {
+  MapCell cabinet, wall;
+  cabinet.normal = wall.normal = Eigen::Vector3d::UnitX();
+  wall.mean = {5, 0, 0};
+  constexpr double kWeight = 1.0 / (0.01 * 0.01), kCell_m = 0.004;
+  std::vector<PatchVote> votes(100, PatchVote{&cabinet, kWeight});
+  votes.push_back({&wall, kWeight});
+  std::vector<double> alone = balanceVotes(votes, 0.0), shared = balanceVotes(votes, kCell_m);
+  double together = 0;
+  for (size_t i = 0; i < 100; ++i) together += shared[i] / alone[i] * kWeight;
+  EXPECT_NEAR(together, 1.0 / (1.0 / (100 * kWeight) + kCell_m * kCell_m), 1e-6 * together);
+  EXPECT_NEAR(shared.back() / alone.back(), 1.0 / 1.16, 1e-9) << "one patch errs by little more";
 }
 
 }  // namespace
