@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "backend/output/left_out_walls.h"
+#include "common/geometry/convex_polygon.h"
 #include "common/geometry/tangent_basis.h"
 
 namespace sgraphs {
@@ -33,36 +34,20 @@ FreeSpaceEvidence evidenceOf(const SituationalGraph& graph) {
   return evidence;
 }
 
-std::set<PlaneId> wallsOfRooms(const SituationalGraph& graph) {
-  std::set<PlaneId> walls;
-  for (const auto& [id, room] : graph.rooms)
-    for (const PlaneId wall : room.seen.walls()) walls.insert(wall);
-  for (const CenterWallsFactor& factor : graph.center_walls) walls.insert({factor.a, factor.b});
-  for (const RoomShapeFactor& factor : graph.room_shapes) walls.insert({factor.a, factor.b});
-  return walls;
-}
-
 // Places on the plane within its polygon, kSample_m apart.
 std::vector<Eigen::Vector3d> samplesOf(const PlaneNode& plane) {
   const auto axes = tangentBasis(plane.normal_map);
-  std::vector<Eigen::Vector2d> outline;
+  Polygon2d outline;
   Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = low;
   for (const Eigen::Vector3d& corner : plane.polygon_map) {
     outline.emplace_back(axes.transpose() * (corner - plane.centroid_map));
     low = low.cwiseMin(outline.back());
     high = high.cwiseMax(outline.back());
   }
-  const auto inside = [&](const Eigen::Vector2d& p) {  // of a convex outline, counter-clockwise
-    for (size_t i = 0; i < outline.size(); ++i) {
-      const Eigen::Vector2d a = outline[i], side = outline[(i + 1) % outline.size()] - a, to = p - a;
-      if (side.x() * to.y() - side.y() * to.x() < 0) return false;
-    }
-    return true;
-  };
   std::vector<Eigen::Vector3d> samples;
   for (double u = low.x(); u <= high.x(); u += kSample_m)
     for (double v = low.y(); v <= high.y(); v += kSample_m)
-      if (inside({u, v})) samples.push_back(plane.centroid_map + axes * Eigen::Vector2d(u, v));
+      if (contains(outline, {u, v})) samples.push_back(plane.centroid_map + axes * Eigen::Vector2d(u, v));
   return samples;
 }
 
@@ -101,18 +86,12 @@ bool MovedAway::walkedPast(const PlaneNode& plane) const {
   return known >= kMinSamples && 2 * gone > known;
 }
 
-SituationalGraph MovedAway::withoutWhoWalkedPast(const SituationalGraph& graph) const {
-  SituationalGraph rest = graph;
+std::set<PlaneId> MovedAway::whoWalkedPast(const SituationalGraph& graph) const {
   const std::set<PlaneId> needed = wallsOfRooms(graph);
-  std::erase_if(rest.planes, [&](const auto& node) {
-    return !needed.contains(node.first) && walkedPast(node.second);
-  });
-  const auto went = [&](PlaneId id) { return graph.planes.contains(id) && !rest.planes.contains(id); };
-  std::erase_if(rest.merged_planes, [&](const auto& merge) { return went(livingPlane(graph, merge.first)); });
-  std::erase_if(rest.observations, [&](const ObservationFactor& f) { return went(f.plane); });
-  std::erase_if(rest.plane_ups, [&](const PlaneUpFactor& f) { return went(f.plane); });
-  std::erase_if(rest.faces, [&](const FacesFactor& f) { return went(f.a) || went(f.b); });
-  return rest;
+  std::set<PlaneId> gone;
+  for (const auto& [id, plane] : graph.planes)
+    if (!needed.contains(id) && walkedPast(plane)) gone.insert(id);
+  return gone;
 }
 
 }  // namespace sgraphs

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "backend/graph/situational_graph.h"
@@ -19,10 +20,9 @@ class MovedAway {
 
   void dropFrom(std::vector<MapPoint>& map) const;
 
-  // The graph without walls that somebody who walked past was taken for: seen from at most three keyframes,
-  // and most of what was seen of them has moved away. A wall that a room is made of stays. What names a wall
-  // that goes, goes with it.
-  SituationalGraph withoutWhoWalkedPast(const SituationalGraph& graph) const;
+  // Walls that somebody who walked past was taken for: seen from at most three keyframes, and most of what
+  // was seen of them has moved away. A wall that a room is made of is none.
+  std::set<PlaneId> whoWalkedPast(const SituationalGraph& graph) const;
 
  private:
   enum class Place { kUnknown, kStands, kMovedAway };

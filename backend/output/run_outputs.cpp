@@ -1,12 +1,14 @@
 #include "backend/output/run_outputs.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "backend/output/dense_trajectory.h"
 #include "backend/output/floor_level.h"
 #include "backend/output/floor_plan.h"
 #include "backend/output/graph_files.h"
+#include "backend/output/left_out_walls.h"
 #include "backend/output/map_cloud.h"
 #include "backend/output/moved_away.h"
 #include "backend/output/occupancy_grid.h"
@@ -70,7 +72,9 @@ void writeOutputs(const RunRecord& record, const std::string& out_dir) {
   writeTrajectories(record, out_dir);
 
   const MovedAway moved_away(*record.graph);
-  const SituationalGraph graph = moved_away.withoutWhoWalkedPast(*record.graph);
+  std::set<PlaneId> no_walls = copiesOfWalls(*record.graph);
+  no_walls.merge(moved_away.whoWalkedPast(*record.graph));
+  const SituationalGraph graph = withoutPlanes(*record.graph, no_walls);
   std::vector<MapPoint> map = buildMap(graph, kMapVoxel_m);
   moved_away.dropFrom(map);
   const std::map<FloorId, FloorNode> floors = describeFloors(graph, map);

@@ -17,6 +17,7 @@ namespace sgraphs {
 struct StageTiming {
   double p50_ms = 0;
   double p99_ms = 0;
+  double max_ms = 0;
   int64_t count = 0;
 };
 

@@ -49,7 +49,8 @@ std::string summaryJson(const RunRecord& record) {
   json["peak_rss_mib"] = record.peak_rss_mib;
   json["stages"] = Json::object();
   for (const auto& [name, t] : record.stages)
-    json["stages"][name] = {{"p50_ms", t.p50_ms}, {"p99_ms", t.p99_ms}, {"count", t.count}};
+    json["stages"][name] = {
+        {"p50_ms", t.p50_ms}, {"p99_ms", t.p99_ms}, {"max_ms", t.max_ms}, {"count", t.count}};
   json["registration"] = registrationJson(record.scans);
   json["factors"] = Json::object();
   for (const auto& [kind, f] : record.factors)

@@ -51,8 +51,8 @@ void reportReplay(const RunRecord& record, const std::string& out_dir) {
                 static_cast<long long>(map->keyframes), map->load_s, map->matched.str().c_str(),
                 map->walked_m, map->after_s);
   for (const auto& [stage, timing] : record.stages)
-    std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   %lld steps\n", stage.c_str(), timing.p50_ms,
-                timing.p99_ms, static_cast<long long>(timing.count));
+    std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   max %8.2f ms   %lld steps\n", stage.c_str(),
+                timing.p50_ms, timing.p99_ms, timing.max_ms, static_cast<long long>(timing.count));
   std::printf("graph_digest %s\n", record.graph_digest.c_str());
 }
 

@@ -24,8 +24,9 @@ void reportStages(const std::string& out_dir) {
               number(summary, "duration_s"), number(summary, "peak_rss_mib"));
   if (!summary.contains("stages")) return;
   for (const auto& [stage, timing] : summary["stages"].items())
-    std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   %.0f steps\n", stage.c_str(), number(timing, "p50_ms"),
-                number(timing, "p99_ms"), number(timing, "count"));
+    std::printf("  %-10s p50 %8.2f ms   p99 %8.2f ms   max %8.2f ms   %.0f steps\n", stage.c_str(),
+                number(timing, "p50_ms"), number(timing, "p99_ms"), number(timing, "max_ms"),
+                number(timing, "count"));
 }
 
 void reportRun(const RunEnd& end, const RunOptions& options) {

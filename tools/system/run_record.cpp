@@ -28,7 +28,8 @@ RunRecord recordOf(const BackendNode& backend, const SystemConfig& config) {
 
 StageTiming timingOf(const LatencyHistogram& latency) {
   return {static_cast<double>(latency.percentileUs(0.5)) * 1e-3,
-          static_cast<double>(latency.percentileUs(0.99)) * 1e-3, latency.count()};
+          static_cast<double>(latency.percentileUs(0.99)) * 1e-3,
+          static_cast<double>(latency.percentileUs(1.0)) * 1e-3, latency.count()};
 }
 
 void addGaps(RunRecord& record, const InputGate& gate) {

@@ -66,7 +66,7 @@ TEST(RunOutputsTest, SummaryCarriesTheFactsOfTheRun) {
   run->record.graph_digest = "abc";
   run->record.reproducible = false;
   run->record.why_not = "a message of KEYFRAME is lost";
-  run->record.stages["odometry"] = {1.5, 4.5, 140};
+  run->record.stages["odometry"] = {1.5, 4.5, 9.5, 140};
   run->record.factors["odometry"] = {13, 78, 70.25};
   run->record.gaps["KEYFRAME"] = 1;
   const test::TempFolder folder;
@@ -80,7 +80,8 @@ TEST(RunOutputsTest, SummaryCarriesTheFactsOfTheRun) {
   EXPECT_EQ(json["reproducible"], false);
   EXPECT_EQ(json["why_not"], "a message of KEYFRAME is lost");
   EXPECT_EQ(json["duration_s"], 13.9);
-  EXPECT_EQ(json["stages"]["odometry"], nlohmann::json({{"p50_ms", 1.5}, {"p99_ms", 4.5}, {"count", 140}}));
+  EXPECT_EQ(json["stages"]["odometry"],
+            nlohmann::json({{"p50_ms", 1.5}, {"p99_ms", 4.5}, {"max_ms", 9.5}, {"count", 140}}));
   EXPECT_EQ(json["factors"]["odometry"], nlohmann::json({{"count", 13}, {"dof", 78}, {"chi2", 70.25}}));
   EXPECT_EQ(json["gaps"]["KEYFRAME"], 1);
 }
