@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "backend/graph/map_plane.h"
 #include "common/geometry/convex_polygon.h"
 #include "common/geometry/tangent_basis.h"
 

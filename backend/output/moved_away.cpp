@@ -1,6 +1,5 @@
 #include "backend/output/moved_away.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "backend/output/left_out_walls.h"

@@ -14,8 +14,7 @@ constexpr float kHuge = 1e30f;
 
 }  // namespace
 
-RayCaster::RayCaster(double cell_m, double max_range_m, double slice_m)
-    : cell_m_(cell_m), slice_m_(slice_m) {
+RayCaster::RayCaster(double cell_m, double max_range_m, double slice_m) : cell_m_(cell_m), slice_m_(slice_m) {
   view_.size = 2 * static_cast<int>(std::ceil((max_range_m + kViewMargin_m) / cell_m));
 }
 

@@ -230,8 +230,9 @@ class Odometry::Impl {
   // corridor the end is hardly known; there the legs, if there are any, say the motion from it on.
   //
   // Nor may the begin be held tighter than it is known. What is seen at the share s of a sweep only (a floor
-  // ahead that tells the pitch) puts the end at (seen - (1 - s) begin) / s: where the begin does not give way,
-  // its error grows by (1 - s) / s from scan to scan, with alternating sign, until the robot nods by degrees.
+  // ahead that tells the pitch) puts the end at (seen - (1 - s) begin) / s: where the begin does not give
+  // way, its error grows by (1 - s) / s from scan to scan, with alternating sign, until the robot nods by
+  // degrees.
   Matrix6d beginInformation(bool has_legs) const {
     const RegistrationConfig& c = config_.registration;
     // After a silence the begin of the scan is a guess.
@@ -249,8 +250,7 @@ class Odometry::Impl {
         Eigen::Vector3d::Constant(c.seam_sigma_rad);
     Matrix6d covariance = previous_registered_covariance_;
     covariance.diagonal() += seam.cwiseAbs2();
-    const Matrix6d weak =
-        has_legs ? loose : diagonalInformation(c.seam_weak_sigma_m, c.seam_weak_sigma_rad);
+    const Matrix6d weak = has_legs ? loose : diagonalInformation(c.seam_weak_sigma_m, c.seam_weak_sigma_rad);
     return weak + covariance.inverse();
   }
 

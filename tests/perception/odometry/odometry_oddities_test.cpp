@@ -274,8 +274,7 @@ TEST(OdometryOdditiesTest, ARobotThatWakesInACorridorDoesNotNod) {
   const SimulatedWalk walk = walkThrough(scene, 1);
   const OdometryRun run = runOdometry(walk, OdometryMode::kLidar);
   ASSERT_GT(run.estimates.size(), 50u);
-  const SE3 T_odom_truth =
-      run.estimates[0].T_odom_body * walk.truth.poseAt(run.estimates[0].time).inverse();
+  const SE3 T_odom_truth = run.estimates[0].T_odom_body * walk.truth.poseAt(run.estimates[0].time).inverse();
   for (const OdometryEstimate& e : run.estimates)
     ASSERT_LT(angle(e.T_odom_body, T_odom_truth * walk.truth.poseAt(e.time)), 0.02)
         << (e.time - walk.truth.start()).seconds() << " s";
